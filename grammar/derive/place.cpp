@@ -33,7 +33,7 @@ std::optional<Scope> changedScope(const std::vector<Attribute>& prefix, Place pl
         if (out.vanishes) return std::nullopt;
         values.insert(values.end(), out.extras.values.begin(), out.extras.values.end());
         place.scope = out.scope;
-        place.scope.centre += out.moved_m;
+        place.scope.centre += out.moved_m + out.grown_m;
     }
     return place.scope;
 }

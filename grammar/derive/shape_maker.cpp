@@ -159,6 +159,7 @@ bool ShapeMaker::evaluateAttributes(const Element& e, const Place& place, Evalua
             if (a.operation->apply && (a.operation->phase == Phase::Scope) == scope) a.operation->apply(context, a);
     };
     apply(e.attributes, true);
+    if (!e.at && !e.to) out.moved_m += out.grown_m;
     if (out.span) spanBetween(context);
     if (out.vanishes) return true;
     standAsHigh(e, place, out);

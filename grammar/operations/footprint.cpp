@@ -55,10 +55,10 @@ void applyFootprint(AttributeContext& context, const Attribute& attribute) {
     if (!drawn->keepsPlace) context.out.moved_m = before;
 }
 
-/// The foot stays where it is.
+/// The foot stays where it is, unless a joint says where the newcomer stands.
 void applyExtrude(AttributeContext& context, const Attribute& attribute) {
     const double height_m = context.number(attribute.args[0]);
-    context.out.moved_m += context.out.scope.axes.y * ((height_m - context.out.scope.size.y) / 2);
+    context.out.grown_m += context.out.scope.axes.y * ((height_m - context.out.scope.size.y) / 2);
     context.out.scope.size.y = height_m;
     context.out.sizeSpan = attribute.span;
 }

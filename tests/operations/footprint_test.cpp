@@ -49,6 +49,22 @@ TEST(Footprints, APlanInMetresSetsTheSizeAndAnExtrusionKeepsTheFoot) {
     EXPECT_NEAR(area(footprintOf(d, s)), 16 * 6 + 5 * 6, 1e-9);
 }
 
+TEST(Footprints, AJointPlacesWhatIsExtruded) {
+    const std::pair<const char*, Vec3d> cases[] = {{"+ footprint rect(2, 2) extrude 1m wall at +y", {0, 2.5, 0}},
+                                                   {"+ wall at +y extrude 6m", {0, 5, 0}},
+                                                   {"+ footprint rect(2, 2) extrude 1m wall at +z", {0, 0, 3}},
+                                                   {"- wall extrude 1m at +y to centre", {0, 2, 0}},
+                                                   {"+ wall extrude 6m", {0, 1, 0}}};
+    for (const auto& [grown, centre] : cases) {
+        const Derivation d =
+            derived("grammar 2\nterminal wall\nstart A -> cube size 4 : B\nrule B -> " + std::string(grown) + "\n");
+        const auto walls = solidsCalled(d, "wall");
+        ASSERT_EQ(walls.size(), 1u) << grown;
+        SCOPED_TRACE(grown);
+        expectNear(walls[0].scope.centre, centre);
+    }
+}
+
 TEST(Footprints, ATerminalWithoutASolidFillsItAndACubeIsABox) {
     const std::string plan = "start A -> footprint ell(16, 12, 6, 5) extrude 4m ";
     const Lowered wall("grammar 1\nterminal wall\n" + plan + "wall\n"), cube("grammar 1\n" + plan + "cube\n");
