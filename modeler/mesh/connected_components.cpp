@@ -10,14 +10,23 @@ namespace {
 
 using namespace detail;
 
+/// Of the greatest solid: where less stands on the ground, it is debris below a model that hangs as a whole, as clouds
+/// do.
+constexpr double leastSupport = 0.01;
+
+bool isSmaller(const ConnectedComponent& a, const ConnectedComponent& b) { return a.volume_m3 < b.volume_m3; }
+
 void classifySupport(std::vector<ConnectedComponent>& pieces, float slack_m) {
     if (pieces.empty()) return;
     float ground = pieces[0].bounds.lo.y;
     for (const ConnectedComponent& p : pieces) ground = std::min(ground, p.bounds.lo.y);
-    for (ConnectedComponent& p : pieces) p.floats = p.bounds.lo.y > ground + slack_m;
-    std::max_element(pieces.begin(), pieces.end(), [](const ConnectedComponent& a, const ConnectedComponent& b) {
-        return a.volume_m3 < b.volume_m3;
-    })->floats = false;
+    double standing_m3 = 0;
+    for (ConnectedComponent& p : pieces) {
+        p.floats = p.bounds.lo.y > ground + slack_m;
+        if (!p.floats) standing_m3 += p.volume_m3;
+    }
+    const auto greatest = std::max_element(pieces.begin(), pieces.end(), isSmaller);
+    if (standing_m3 < leastSupport * greatest->volume_m3) greatest->floats = false;
 }
 
 /// Leaves the entries i for which stays(i) says so, `left` of them.
@@ -164,13 +173,11 @@ std::vector<bool> selectKept(std::vector<ConnectedComponent> solids, Keep keep, 
     std::vector<bool> stays(solids.size(), keep == Keep::All);
     if (keep == Keep::All || solids.empty()) return stays;
     classifySupport(solids, slack_m);
-    const auto less = [](const ConnectedComponent& a, const ConnectedComponent& b) {
-        return a.volume_m3 < b.volume_m3;
-    };
-    const auto greatest = std::max_element(solids.begin(), solids.end(), less);
+    const auto greatest = std::max_element(solids.begin(), solids.end(), isSmaller);
     for (size_t i = 0; i < solids.size(); ++i)
         stays[i] = keep == Keep::Grounded && !solids[i].floats && solids[i].volume_m3 >= 1e-3 * greatest->volume_m3;
-    stays[static_cast<size_t>(greatest - solids.begin())] = true;
+    if (std::find(stays.begin(), stays.end(), true) == stays.end())
+        stays[static_cast<size_t>(greatest - solids.begin())] = true;
     return stays;
 }
 

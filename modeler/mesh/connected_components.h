@@ -13,15 +13,16 @@ struct ConnectedComponent {
     double volume_m3 = 0;  ///< of what the surface encloses, its cavities included
     Box3f bounds;
     std::vector<OriginId> origins;  ///< who owns it, most triangles first
-    bool floats = false;            ///< neither the greatest nor standing on the model's lowest level
+    bool floats = false;            ///< doesn't stand on the model's lowest level
 };
 
 /// The pieces in the order of their first triangle. Whatever comes down to `slack_m` above the mesh's lowest point
-/// stands; one cell is a sensible slack. O(n log n); `threads` 0: all.
+/// stands; one cell is a sensible slack. So does the greatest, where less than a hundredth of its volume stands: a
+/// cloud over its debris. O(n log n); `threads` 0: all.
 std::vector<ConnectedComponent> connectedComponents(const Mesh& mesh, float slack_m, int threads = 1);
 
 /// Which solids of a mesh stay: all; those that stand and aren't debris of less than a thousandth of the greatest one;
-/// or the greatest one alone.
+/// or the greatest one alone. Never none.
 enum class Keep { All, Grounded, Largest };
 /// Whether each of a model's solids stays; of a piece, volume and bounds count.
 std::vector<bool> selectKept(std::vector<ConnectedComponent> solids, Keep keep, float slack_m);

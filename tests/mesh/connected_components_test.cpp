@@ -42,6 +42,24 @@ TEST(Pieces, ABallInACavityFloatsAndTheCavityIsNoPiece) {
     EXPECT_EQ(floating, 1u);  // the box beside the rock stands on the same ground
 }
 
+TEST(Pieces, TheGreatestFloatsUnlessOnlyDebrisStands) {
+    for (const float half : {1.0f, 0.3f}) {
+        Scene s;
+        const field::Owned parts[] = {{box(s.graph, {0, half, 0}, {half, half, half}), 1},
+                                      {box(s.graph, {0, 8, 0}, {2, 2, 2}), 2}};
+        s.field = field::sum(s.graph, parts);
+        Mesh mesh = meshed(s);
+        const auto found = connectedComponents(mesh, 0.125f);
+        ASSERT_EQ(found.size(), 2u);
+        const bool debris = half < 1;
+        for (const ConnectedComponent& p : found) EXPECT_EQ(p.floats, !debris && p.volume_m3 > 30) << half;
+        keepOnly(mesh, Keep::Grounded, 0.125f);
+        const auto kept = connectedComponents(mesh, 0.125f);
+        ASSERT_EQ(kept.size(), debris ? 2u : 1u);
+        EXPECT_NEAR(kept[0].bounds.lo.y, 0, 0.02);
+    }
+}
+
 TEST(Pieces, KeepLeavesClosedSolidsAndFillsCavities) {
     Scene s;
     auto& g = s.graph;
