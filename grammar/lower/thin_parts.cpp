@@ -13,18 +13,33 @@
 namespace sgm::lower {
 namespace {
 
-constexpr int fewestLines = 4, mostLines = 16;  ///< along an axis across the thin one
-constexpr int steps = 16;                       ///< between the samples on a line
-constexpr double lineReach = 1.02;              ///< of a scope's half extent, so that its own faces are crossed
-constexpr int halvings = 6;                     ///< of a step around a crossing
-constexpr int fewestCrossings = 3;              ///< of a part that isn't buried
-constexpr double leastMissing = 0.1;            ///< share of the surface that a part in the list lacks
-constexpr size_t partsPerGroup = 64;            ///< of a parallel loop
-constexpr size_t partsPerTape = 8;              ///< that are shortened from one tape
+constexpr int fewestLines = 4, mostLines = 16;    ///< along an axis across the thin one
+constexpr int fewestSteps = 16, mostSteps = 128;  ///< between the samples on a line
+constexpr double lineReach = 1.02;                ///< of a scope's half extent, so that its own faces are crossed
+constexpr int halvings = 6;                       ///< of a step around a crossing
+constexpr int fewestCrossings = 3;                ///< of a part that isn't buried
+constexpr double leastMissing = 0.1;              ///< share of the surface that a part in the list lacks
+constexpr double leaningWall = 1.42;              ///< cells that hold a wall of any plan or a shell are thinner by this
+constexpr size_t partsPerGroup = 64;              ///< of a parallel loop
+constexpr size_t partsPerTape = 8;                ///< that are shortened from one tape
 
 /// Where the i-th of n lines passes a half extent: denser towards the ends, for a bar may run through a house and show
 /// these alone; off the middle, so that no line lies in a plane of symmetry.
 double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }
+
+/// Calls visit(share, axis) for upright lines through a scope whose walls or shell are `wall_m` thick, as eachLine. The
+/// outermost ones stand in walls along the scope's sides.
+template <class Visit>
+bool eachUprightLine(const derive::Scope& scope, double wall_m, Visit&& visit) {
+    const auto along = [&](int i, int axis) {
+        const double outermost = std::max(1 - wall_m / scope.size[axis], 0.0);
+        return i == 0 ? -outermost : i + 1 == mostLines ? outermost : shareOf(i, mostLines);
+    };
+    for (int j = 0; j < mostLines; ++j)
+        for (int i = 0; i < mostLines; ++i)
+            if (!visit(Vec3d{along(i, 0), 0, along(j, 2)}, 1)) return false;
+    return true;
+}
 
 /// Calls visit(share, axis) for each line through the scope along its thin axes until one call returns false; whether
 /// none did. `share` is where the line passes, in half extents, 0 along the axis.
@@ -150,6 +165,7 @@ struct Rows {
 struct Candidate {
     OriginId part = 0;
     const derive::Scope* scope = nullptr;
+    double wall_m = 0;  ///< thickness of its walls or shell, where these are what is thin; else 0
     double missing = 0;
     bool isWhole = false;  ///< told by the mesh alone
 };
@@ -221,11 +237,12 @@ private:
         for (size_t i = 0; i < parts.size(); ++i) boxes[i] = boxOf(*parts[i].scope);
         shortenTo(tape, {boxes.data(), parts.size()}, each_);
         for (size_t i = 0; i < parts.size(); ++i)
-            if (!each_[i].isEmpty) parts[i].missing = missing(parts[i].part, *parts[i].scope, each_[i].tape);
+            if (!each_[i].isEmpty) parts[i].missing = missing(parts[i], each_[i].tape);
     }
 
-    double missing(OriginId part, const derive::Scope& scope, const eval::Tape& tape) {
-        findCrossings(scope, tape);
+    double missing(const Candidate& candidate, const eval::Tape& tape) {
+        const OriginId part = candidate.part;
+        findCrossings(candidate, tape);
         if (inside_.empty()) return 0;
         owners_.resize(middles_.x.size());
         eval::evaluateOrigin(tape, middles_.points(), owners_.data(), workspace_);
@@ -249,19 +266,28 @@ private:
     }
 
     /// Where lines through the scope along its thin axes cross the field's surface.
-    void findCrossings(const derive::Scope& scope, const eval::Tape& tape) {
+    void findCrossings(const Candidate& candidate, const eval::Tape& tape) {
+        const derive::Scope& scope = *candidate.scope;
+        const double wall_m = candidate.wall_m;
+        const int steps = wall_m > 0 ? static_cast<int>(std::clamp(std::ceil(2 * scope.size.y / wall_m),
+                                                                   double{fewestSteps}, double{mostSteps}))
+                                     : fewestSteps;
         rows_.clear();
-        eachLine(scope, cell_m_, [&](Vec3d share, int axis) {
+        const auto add = [&](Vec3d share, int axis) {
             for (int s = 0; s <= steps; ++s) {
                 share[axis] = lineReach * (2.0 * s / steps - 1);
                 rows_.add(scope.point(share).as<float>());
             }
             return true;
-        });
+        };
+        if (wall_m > 0)
+            eachUprightLine(scope, wall_m, add);
+        else
+            eachLine(scope, cell_m_, add);
         evaluate(rows_, tape);
         inside_.clear(), outside_.clear();
         for (size_t i = 0; i + 1 < values_.size(); ++i) {
-            if (i % (steps + 1) == steps || (values_[i] < 0) == (values_[i + 1] < 0)) continue;
+            if ((i + 1) % static_cast<size_t>(steps + 1) == 0 || (values_[i] < 0) == (values_[i + 1] < 0)) continue;
             inside_.push_back(rows_[values_[i] < 0 ? i : i + 1]), outside_.push_back(rows_[values_[i] < 0 ? i + 1 : i]);
         }
         for (int halving = 0; halving < halvings && !inside_.empty(); ++halving) {
@@ -302,26 +328,40 @@ double cellThatHolds(const derive::Scope& scope) {
     return least / most;
 }
 
+/// The least thickness of walls and shells that a solid's parameters say, metres; infinite where they say none.
+double wallOf(const derive::SolidValue& solid) {
+    double least = INFINITY;
+    if (!solid.primitive) return least;
+    const std::span<const field::PrimitiveParameter> row = solid.primitive->parameters;
+    for (size_t i = 0; i < row.size() && i < solid.args.size(); ++i)
+        if (row[i].isThickness && solid.args[i].num() > 0) least = std::min(least, solid.args[i].num());
+    return least;
+}
+
 }  // namespace
 
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress) {
+    const auto cell = static_cast<double>(cell_m);
     std::vector<Candidate> thin;
     std::deque<derive::Scope> scopes;  // where they stand on hills; a deque, for references stay
     std::vector<bool> isThin(model.shapeOf.size());
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         if (model.shapeOf[part] == derive::none) continue;
         const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
-        if (shape.solid == derive::none || !(cellThatHolds(shape.scope) < static_cast<double>(cell_m))) continue;
+        if (shape.solid == derive::none) continue;
+        const bool isFlat = cellThatHolds(shape.scope) < cell;
+        const double wall_m = isFlat ? 0 : wallOf(derivation.tree.solids[shape.solid]);
+        if (!isFlat && !(wall_m / leaningWall < cell)) continue;
         scopes.push_back(derive::liftedScope(derivation, model.shapeOf[part]));
-        thin.push_back({part, &scopes.back()});
+        thin.push_back({part, &scopes.back(), wall_m});
         isThin[part] = true;
     }
     if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     const Presence presence(mesh, isThin, cell_m);
     parallelFor(thin.size(), threads, nullptr, [&](size_t i, int) {
-        thin[i].isWhole = presence.isWhole(*thin[i].scope, thin[i].part, static_cast<double>(cell_m));
+        thin[i].isWhole = thin[i].wall_m == 0 && presence.isWhole(*thin[i].scope, thin[i].part, cell);
     });
     std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
     orderByPlace(thin);
@@ -340,9 +380,12 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     if (cancelled(progress)) return cancelledError();
     std::sort(thin.begin(), thin.end(), [](const Candidate& a, const Candidate& b) { return a.part < b.part; });
     std::vector<ThinPart> found;
-    for (const Candidate& c : thin)
-        if (c.missing > leastMissing)
-            found.push_back({c.part, minComponent(c.scope->size), cellThatHolds(*c.scope), c.missing});
+    for (const Candidate& c : thin) {
+        if (!(c.missing > leastMissing)) continue;
+        const bool wall = c.wall_m > 0;
+        found.push_back({c.part, wall ? c.wall_m : minComponent(c.scope->size),
+                         wall ? c.wall_m / leaningWall : cellThatHolds(*c.scope), c.missing});
+    }
     return found;
 }
 

@@ -297,10 +297,17 @@ std::string causeText(const Model& model, const FloatCause& cause, float cell_m)
         case FloatCause::Kind::Unknown:
             return {};
         case FloatCause::Kind::Gap:
+            if (cause.ours == cause.theirs)
+                return fmt::format("a gap of {:.3g} m divides {} at ({:.2f}, {:.2f}, {:.2f})", cause.width_m,
+                                   partText(model, cause.ours), at.x, at.y, at.z);
             return fmt::format("a gap of {:.3g} m lies between its {} and {} at ({:.2f}, {:.2f}, {:.2f})",
                                cause.width_m, partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y,
                                at.z);
         case FloatCause::Kind::Touch:
+            if (cause.ours == cause.theirs)
+                return fmt::format(
+                    "{} is thinner than a cell of {:.3g} m at ({:.2f}, {:.2f}, {:.2f}): smaller cells show it whole",
+                    partText(model, cause.ours), cell_m, at.x, at.y, at.z);
             return fmt::format(
                 "its {} and {} meet at ({:.2f}, {:.2f}, {:.2f}) by less than a cell of {:.3g} m: let them overlap "
                 "more, or take smaller cells",

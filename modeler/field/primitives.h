@@ -26,6 +26,7 @@ struct PrimitiveParameter {
     std::string_view doc;
     std::string_view choices{};  ///< for Choice: names separated by '|'; the value is the index
     bool optional = false;       ///< may be left out: then `fallback` says so, and the row reads it as nothing
+    bool isThickness = false;    ///< of a wall or shell that is thinner than the scope, metres; 0 for none
 };
 
 /// A value with the node(s) that carry it (slots, or expressions over them) and its present number(s) for bounds.

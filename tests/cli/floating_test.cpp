@@ -143,7 +143,7 @@ TEST_F(Cli, AThinPartElsewhereOnTheShapeOfAFloatingPieceDoesNotHoldIt) {
         "0)) "
         "+ cylinder size .05m from (-18m, 1m, -8m) to (-18m, 1m, 8m)\n");
     const Outcome run = sgm("build " + file + " --resolution 128");
-    EXPECT_NE(run.out.find("a gap of 2 m lies between"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("a gap of 2 m divides"), std::string::npos) << run.out;
     EXPECT_EQ(run.out.find("thick, holds it"), std::string::npos) << run.out;
 }
 

@@ -108,6 +108,21 @@ TEST(ThinParts, BuriedAndThickOnesAreNotMissing) {
     EXPECT_NEAR(missing[0].cell_m, 0.01 / (std::cos(40 * M_PI / 180) + std::sin(40 * M_PI / 180)), 1e-4);
 }
 
+/// Their scopes are thick.
+TEST(ThinParts, ParapetsAndRoofShellsAreNamed) {
+    const std::pair<const char*, double> roofs[] = {{"flatRoof(parapet: .9m, thickness: 5cm)", .05},
+                                                    {"gableRoof(32deg, cover: 6cm, ends: x)", .06}};
+    for (const auto& [roof, wall_m] : roofs) {
+        const Lowered model("grammar 2\nstart A -> footprint rect(14, 9) extrude 4m W\nrule W -> block + " +
+                            std::string(roof) + " at +y\n");
+        const auto missing = missingAt(model, 0.31f);
+        ASSERT_EQ(missing.size(), 1u) << roof;
+        EXPECT_NEAR(missing[0].thickness_m, wall_m, 1e-9);
+        EXPECT_LT(missing[0].cell_m, wall_m);
+        EXPECT_TRUE(missingAt(model, static_cast<float>(missing[0].cell_m)).empty()) << roof;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, Thin,
                          testing::Values(std::pair("mullions", std::vector<std::string>{"bars", "finial"}),
                                          std::pair("finials", std::vector<std::string>{"pole", "flag"}),
