@@ -35,6 +35,7 @@ Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, Mes
                             const mesh::Scene& scene, Context& context) {
     keepOnly(request.edits.keep, meshed, request.grid.threads, request.quiet);
     const float cell_m = meshed.grid.cell_m;
+    const auto before = static_cast<double>(meshed.mesh.triangleCount());
     auto mesh = pipeline::edited(std::move(meshed.mesh), request.edits, request.grid.surface, cell_m, context);
     if (!mesh.ok()) return mesh;
     if (mesh->triangleCount() == 0 && scene.empty() && !allFiles(request.out).empty()) {
@@ -42,6 +43,12 @@ Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, Mes
         error.message += " (--cell, --resolution)";
         return error;
     }
+    const double left = before > 0 ? static_cast<double>(mesh->triangleCount()) / before : 0;
+    if (request.edits.simplify < 1 && left > request.edits.simplify && !request.quiet)
+        printMessage(
+            "warning: --simplify {:g}: {:.2g} of the triangles are left, for fewer would cross one another or "
+            "turn parts inside out; --resolution takes away more\n",
+            request.edits.simplify, left);
     const bool usuallySimplified = request.grid.surface == mesh::Surface::Crisp && request.edits.smooth == 0;
     if (usuallySimplified && !request.edits.tolerance_m && !isBuiltWith(Package::Cgal) && !request.quiet)
         printMessage("note: {}: the mesh keeps all its triangles\n",

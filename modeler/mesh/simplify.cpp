@@ -66,7 +66,8 @@ public:
     Simplifier(const Mesh& mesh, double tolerance_m, double rounding_m, int threads, Progress* progress)
         : mesh_(mesh), tolerance_m_(tolerance_m), rounding_m_(rounding_m), threads_(threads), progress_(progress) {}
 
-    Result<Mesh> run() {
+    /// Nothing where every result within the tolerance has faults.
+    Result<std::optional<Mesh>> run() {
         flat_ = flatten(mesh_, threads_);
         releaseConfined(mesh_, flat_, threads_, progress_);
         auto regions = findRegions(flat_, threads_);
@@ -93,9 +94,18 @@ public:
             auto faults = finder.find(triangles_, planar_->triangulated());
             if (cancelled(progress_)) return cancelledError();
             if (faults.empty()) faults = insides.turned(triangles_);
-            if (faults.empty()) return composeMesh(mesh_, flat_, regions_, planes_, triangles_);
+            if (faults.empty()) return std::optional(composeMesh(mesh_, flat_, regions_, planes_, triangles_));
+            isRefined_ = true;
             if (!refine(faults)) break;
         }
+        return std::optional<Mesh>();
+    }
+
+    /// Whether faults made run() give vertices back.
+    bool isRefined() const { return isRefined_; }
+
+    /// All triangles as they are, after run().
+    Mesh keepAll() {
         triangles_.clear();
         for (uint32_t t = 0; t < flat_.triangles.size(); ++t)
             triangles_.push_back({flat_.triangles[t], regions_.ofTriangle[t]});
@@ -137,6 +147,7 @@ private:
     }
 
     const Mesh& mesh_;
+    bool isRefined_ = false;
     const double tolerance_m_, rounding_m_;
     const int threads_;
     Progress* const progress_;
@@ -148,6 +159,41 @@ private:
     std::optional<PlanarMerge> planar_;
     std::vector<SimpleTriangle> triangles_;  ///< of the result; those of `curved_` first, in its order
 };
+
+/// The mean length of a mesh's edges, were its triangles equilateral; metres.
+double edgeOf(const Mesh& mesh) {
+    double area_m2 = 0;
+    const FlatMesh flat = flatten(mesh, 1);
+    for (const Triangle& t : flat.triangles) {
+        const Vec3d p = flat.positions[t.x].as<double>();
+        area_m2 += length(cross(flat.positions[t.y].as<double>() - p, flat.positions[t.z].as<double>() - p)) / 2;
+    }
+    return std::sqrt(area_m2 / (std::max<double>(1, static_cast<double>(flat.triangles.size())) * 0.433));
+}
+
+/// A mesh simplified within the tolerance. Within one as large as the triangles, parts cross one another in many
+/// places, which keep their vertices then: quarters of it, `mostQuarters` at most, may leave fewer, or no faults at
+/// all. The fewest triangles count.
+Result<Mesh> simplifyWithin(const Mesh& mesh, double tolerance_m, double rounding_m, int threads, Progress* progress) {
+    constexpr int mostQuarters = 8;
+    const auto extent_m = static_cast<double>(maxComponent(mesh.bounds().size()));
+    double within_m = std::min(tolerance_m, std::max(extent_m, rounding_m));
+    std::optional<Mesh> best;
+    std::optional<double> edge_m;
+    for (int quarter = 0;; ++quarter, within_m /= 4) {
+        Simplifier simplifier(mesh, within_m, rounding_m, threads, progress);
+        auto made = simplifier.run();
+        if (!made.ok()) return made.error();
+        if (*made) {
+            if (!best || (*made)->triangleCount() < best->triangleCount()) best = std::move(*made);
+            if (!simplifier.isRefined()) return std::move(*best);
+            if (!edge_m) edge_m = edgeOf(mesh);
+        }
+        const bool isLast = quarter == mostQuarters || within_m <= rounding_m;
+        if (best && (isLast || within_m < 0.25 * *edge_m)) return std::move(*best);
+        if (isLast) return simplifier.keepAll();
+    }
+}
 
 /// Pieces that are large share the threads, each of the others has one of them.
 class PieceSimplifier {
@@ -176,7 +222,7 @@ private:
     static constexpr size_t largeTriangles = 1 << 17;
 
     void make(size_t i, int threads) {
-        auto mesh = Simplifier(pieces_[i], options_.tolerance_m, rounding_m_, threads, progress_).run();
+        auto mesh = simplifyWithin(pieces_[i], options_.tolerance_m, rounding_m_, threads, progress_);
         if (mesh.ok()) {
             made_[i] = std::make_shared<const Mesh>(std::move(*mesh));
             return;
@@ -231,7 +277,7 @@ Result<Mesh> simplify(const Mesh& mesh, const SimplifyOptions& options, Progress
     const double rounding_m = roundingOf(mesh);
     // Surfaces move by the tolerance at most.
     std::vector<Mesh> pieces = splitApart(mesh, 4 * std::max(options.tolerance_m, rounding_m), options.threads);
-    if (pieces.empty()) return Simplifier(mesh, options.tolerance_m, rounding_m, options.threads, progress).run();
+    if (pieces.empty()) return simplifyWithin(mesh, options.tolerance_m, rounding_m, options.threads, progress);
     if (options.pieces) options.pieces->begin(options.tolerance_m, rounding_m);
     auto made = PieceSimplifier(pieces, options, rounding_m, progress).run();
     if (!made.ok()) return made.error();
@@ -250,14 +296,14 @@ Result<Mesh> simplifyToShare(const Mesh& mesh, double share, int threads, Progre
     const auto extent = static_cast<double>(maxComponent(mesh.bounds().size()));
     double low = 1e-5 * extent, high = 0.2 * extent;
     auto best = simplify(mesh, {high, threads}, progress);
+    if (!best.ok()) return best;
     while (high > 1.125 * low) {
         const double middle = std::sqrt(low * high);
         auto tried = simplify(mesh, {middle, threads}, progress);
         if (!tried.ok()) return tried;
-        if (static_cast<double>(tried->triangleCount()) <= most)
-            high = middle, best = std::move(tried);
-        else
-            low = middle;
+        const bool isEnough = static_cast<double>(tried->triangleCount()) <= most;
+        (isEnough ? high : low) = middle;
+        if (isEnough || tried->triangleCount() < best->triangleCount()) best = std::move(tried);
     }
     return best;
 }

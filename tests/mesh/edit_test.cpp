@@ -98,6 +98,17 @@ TEST(Edit, SimplifyingReachesItsRatioAndStaysClosed) {
     EXPECT_EQ(simplifyToShare(mesh, 1, 1, nullptr)->triangleCount(), mesh.triangleCount());
 }
 
+/// Within so much, everything crosses everything.
+TEST(Edit, ALargerToleranceLeavesNoMore) {
+    const Mesh mesh = twoBalls(40);
+    const auto fine = simplify(mesh, {.tolerance_m = 0.05}, nullptr),
+               coarse = simplify(mesh, {.tolerance_m = 50}, nullptr);
+    ASSERT_TRUE(fine.ok() && coarse.ok());
+    EXPECT_LT(fine->triangleCount() * 5, mesh.triangleCount());
+    EXPECT_LE(coarse->triangleCount(), fine->triangleCount());
+    expectClosed(*coarse);
+}
+
 TEST(Edit, RefusesNonsenseAndStopsWhenAsked) {
     const Mesh mesh = twoBalls(30);
     EXPECT_EQ(simplifyToShare(mesh, 0, 1, nullptr).error().kind, Error::Kind::Usage);
