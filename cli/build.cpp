@@ -50,6 +50,22 @@ Status checkSection(const BuildRequest& request) {
     return Done{};
 }
 
+/// What changes meshes needs a file that holds one.
+Status checkEdits(const BuildRequest& request) {
+    if (!needsNoMesh(request) || allFiles(request.out).empty()) return Done{};
+    const std::pair<bool, const char*> edits[] = {{request.edits.smooth > 0, "--smooth"},
+                                                  {request.edits.simplify < 1, "--simplify"},
+                                                  {request.edits.tolerance_m.has_value(), "--tolerance"},
+                                                  {request.edits.keep != mesh::Keep::All, "--keep"},
+                                                  {request.flipNormals, "--flip-normals"}};
+    for (const auto& [asked, option] : edits)
+        if (asked)
+            return Error{Error::Kind::Usage,
+                         fmt::format("{} changes meshes, and '{}' holds none: leave it out, or add -o model.glb",
+                                     option, allFiles(request.out).front())};
+    return Done{};
+}
+
 /// What this build of the program can't do: Error::Input names the package.
 Status checkPackages(const BuildRequest& request) {
     const std::tuple<bool, Package, const char*> all[] = {
@@ -79,6 +95,7 @@ Status checkRequest(const BuildRequest& request) {
         return Error{Error::Kind::Usage,
                      "--object-cell: what is asked for is made of one field, with one cell for all; leave it out"};
     if (const Status s = checkSection(request); !s.ok()) return s;
+    if (const Status s = checkEdits(request); !s.ok()) return s;
     if (request.agent.empty()) return Done{};
     if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
     if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();

@@ -235,6 +235,8 @@ Status mutated(const MutateRequest& request) {
 
 int mutate(MutateRequest request) {
     request.model.quiet = request.quiet;
+    if (!request.output.empty() && !request.output.ends_with(".png"))
+        return fail({Error::Kind::Usage, fmt::format("'{}': sheets are .png", request.output)});
     if (!request.output.empty()) request.model.targets.push_back({"-o", request.output});
     const Status done = mutated(request);
     return done.ok() ? 0 : fail(done.error());

@@ -147,11 +147,7 @@ void checkOn(OperationChecker& checker, const syntax::Attribute& written) {
         checker.find(on)->args.push_back(rules::makeConstant(e.span, rules::makeWord("lot")));
         return;
     }
-    if (isCalled(e, "last")) {
-        if (!checker.isInChain() && !checker.isInFinally())
-            checker.error(e.span, "'last' is the newest shape of a chain, and there is none here",
-                          "give the rule a 'repeat'");
-    } else if (isCalled(e, "any")) {
+    if (isCalled(e, "any")) {
         host.kind = HostChoice::Kind::Any;
         if (!checker.isInChain())
             checker.error(e.span, "'any(d)' draws among the shapes of a chain, and there is none here",
@@ -162,7 +158,7 @@ void checkOn(OperationChecker& checker, const syntax::Attribute& written) {
             checker.error(e.span, "'any' takes one direction", "write 'any(+x)' or 'any(d)'");
     } else if (isCalled(e, "each")) {
         readEach(checker, e, host);
-    } else if (e.kind != Written::Kind::Error) {
+    } else if (!isCalled(e, "last") && e.kind != Written::Kind::Error) {
         checker.error(e.span,
                       fmt::format("'on' takes 'last', 'any(d)', 'each(Name)' or 'lot', not '{}'", e.span.text()));
     }
@@ -185,8 +181,8 @@ void agreeOn(OperationChecker& checker, const Element& element, const Attribute&
                           "write 'place House on lot'");
         return;
     }
-    // Outside a chain its argument was refused already.
-    if (checker.isInChain() || checker.isInFinally()) needOperator(checker, element, attribute);
+    const bool isRefused = element.on && element.on->kind == HostChoice::Kind::Any && !checker.isInChain();
+    if (!isRefused) needOperator(checker, element, attribute);
 }
 
 void needJoint(OperationChecker& checker, const Element& element, const Attribute& attribute) {

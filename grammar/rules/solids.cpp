@@ -90,7 +90,12 @@ constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
     {"box", "did you mean 'cube'?"},      {"ball", "did you mean 'sphere'?"},
     {"tube", "did you mean 'cylinder'?"}, {"ring", "did you mean 'torus'?"},
     {"union", "join shapes with '+'"},    {"difference", "cut with '-'"},
-    {"subtract", "cut with '-'"},         {"intersection", "keep with '&' what both share"}};
+    {"subtract", "cut with '-'"},         {"intersection", "keep with '&' what both share"},
+    {"i", "write 'mesh(\"file.obj\")'"},  {"s", "write 'size (x, y, z)' behind a shape"},
+    {"t", "write 'move (x, y, z)'"},      {"r", "write 'turn (x, y, z)'"}};
+
+/// What other programs give a solid: here its scope has it.
+constexpr std::string_view extents[] = {"radius", "r", "diameter", "d", "width", "height", "h", "depth", "length"};
 
 /// One word of a choice becomes its index; a parameter that offers the same words is asked at every derivation.
 Expr checkChoiceArgument(CheckContext& ctx, Place& place, const Written& e,
@@ -162,7 +167,11 @@ Solid checkPrimitive(CheckContext& ctx, Place& place, const Written& e, const fi
                                         : known.empty() ? fmt::format("'{}' takes no parameters", row.name)
                                                         : fmt::format("'{}' takes no more than {} parameters: {}",
                                                                       row.name, known.size(), fmt::join(known, ", "));
-            ctx.diagnostics.error(e.args[i].span, message, nearestHint(name, known));
+            const bool isExtent = name.empty() ? known.empty() : std::ranges::count(extents, name) > 0;
+            ctx.diagnostics.error(
+                e.args[i].span, message,
+                isExtent ? fmt::format("its extents are those of its scope: write '{} size (x, y, z)'", row.name)
+                         : nearestHint(name, known));
             break;
         }
         if (given[index])
@@ -257,7 +266,8 @@ std::string hintForSolid(CheckContext& ctx, std::string_view word) {
     if (!file.empty()) return fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
     std::vector<std::string> known = symbolNames(ctx, true);
     for (const field::Primitive& row : field::primitives()) known.emplace_back(row.name);
-    return nearestHint(word, known);
+    std::string near = nearestHint(word, known);
+    return near.empty() && isNonTerminal(word) ? fmt::format("write 'rule {} -> …'", word) : near;
 }
 
 /// Numbers that are known already and outside the parameter's range.

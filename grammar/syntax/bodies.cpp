@@ -186,7 +186,9 @@ void readShape(Cursor& cursor, Element& element) {
     } else if (element.before.empty()) {
         const bool calculates = element.op != Operator::None && cursor.at(Token::Kind::Number);
         cursor.fail("expected a shape, found " + cursor.found(),
-                    calculates ? "put a calculation in parentheses: 'size (2 + 1)'" : "");
+                    calculates       ? "put a calculation in parentheses: 'size (2 + 1)'"
+                    : cursor.at("~") ? "the parts of a 'split' are set apart by '|'"
+                                     : "");
         return;
     }
     element.after = readAttributes(cursor);

@@ -191,6 +191,9 @@ void readStart(Cursor& cursor, Ast& ast) {
     StartDecl start;
     const uint32_t begin = cursor.take().begin;
     start.symbol = readSymbol(cursor, "a symbol");
+    if (cursor.at("when") || cursor.at("weight"))
+        cursor.fail("a start has no " + cursor.found(),
+                    "let the start put a symbol, and give its rules a 'when' or a 'weight'");
     expectArrow(cursor, "after the start's symbol");
     start.body = readBody(cursor);
     start.span = cursor.since(begin);
@@ -230,6 +233,9 @@ void readRule(Cursor& cursor, Ast& ast) {
     rule.symbol = readSymbol(cursor, "a symbol");
     while (readRuleCondition(cursor, rule)) {
     }
+    if (cursor.at(Token::Kind::Number))
+        cursor.fail("expected '->' after what the rule matches, found " + cursor.found(),
+                    "the weight of a rule among others is written 'weight 30'");
     if (cursor.at(Token::Kind::Word) && !cursor.at("->")) {
         const std::string near = didYouMean(cursor.peekText(), {"beside", "after", "when", "weight", "repeat"});
         cursor.fail(

@@ -57,6 +57,13 @@ constexpr ForeignWord foreignAttributes[] = {
     {"material", "write 'of' and a material, as 'of stone', or 'color #c8b090'"},
     {"roughness", "write 'rough'"},
     {"metalness", "write 'metal'"},
+    {"comp", "write 'faces { front: Wall | side: Wall | top: Roof }'"},
+    {"s", "write 'size'"},
+    {"t", "write 'move'"},
+    {"r", "write 'turn'"},
+    {"difference", "write 'a - b'"},
+    {"union", "write 'a + b'"},
+    {"intersection", "write 'a & b'"},
 };
 
 constexpr ForeignWord foreignFunctions[] = {
@@ -137,6 +144,13 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
     if (before == "roof" && std::find(std::begin(roofForms), std::end(roofForms), text) != std::end(roofForms))
         return Hint{cursor.span(token), "'roof' has no form " + quoted(text),
                     "write " + quoted(std::string(text) + "Roof")};
+    if (cursor.text(cursor.previous(3)) == "at" && (before == "+" || before == "-")) {
+        const Token axis = cursor.previous(2);
+        const std::string_view name = cursor.text(axis);
+        if (name == "x" || name == "y" || name == "z")
+            return Hint{cursor.span(axis), quoted(std::string(name) + std::string(before)) + " is no direction",
+                        "write " + quoted(std::string(before) + std::string(name))};
+    }
     if (text == "*" && message.starts_with("unexpected"))
         return Hint{cursor.span(token), "unexpected '*'",
                     "what two shapes share is 'a & b'; a calculation stands in parentheses"};

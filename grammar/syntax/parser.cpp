@@ -22,8 +22,11 @@ void refuse(Cursor& cursor) {
         std::vector<std::string> words;
         for (const Declaration& d : declarations()) words.emplace_back(d.word);
         const std::string near = didYouMean(cursor.peekText(), words);
+        const bool isRule = cursor.at("->", 1) || (cursor.at("-", 1) && cursor.at("->", 2));
         cursor.fail(cursor.found() + " begins no declaration",
-                    near.empty() ? "later lines of a declaration are indented" : "did you mean " + quoted(near) + "?");
+                    isRule         ? "write " + quoted("rule " + std::string(cursor.peekText()) + " -> …")
+                    : near.empty() ? "later lines of a declaration are indented"
+                                   : "did you mean " + quoted(near) + "?");
     } else {
         cursor.fail("unexpected " + cursor.found(), nearestWord(cursor.operations(), cursor.peekText()));
     }

@@ -50,6 +50,11 @@ TEST(Joints, FaceToFaceByDefault) {
     EXPECT_EQ(d.tree.bonds().all[0].joint[1], 3u);
 }
 
+TEST(Joints, LastIsWhatWasPlacedLastInAnyBody) {
+    const auto d = derived("grammar 2\nstart S -> cube size 4 + cube size 2 at +y + sphere size 1 on last at +y\n");
+    EXPECT_NEAR(d.tree.shapes[static_cast<derive::ShapeId>(d.tree.shapes.size() - 1)].scope.centre.y, 2 + 2 + .5, 1e-9);
+}
+
 TEST(Joints, CentreOverlapAndShift) {
     const auto centre =
         derived("grammar 1\nstart S -> cube size 2 + sphere size 1 at +x to centre shift (0, .5, .25m)\n");
