@@ -303,5 +303,18 @@ TEST_F(Solids, NooksShowThePartOfTheirFace) {
     EXPECT_EQ(mixed, 0u);
 }
 
+/// A thin body on the way to the sky is left behind: what lies beyond it hides the rest.
+TEST_F(Solids, NoDayComesIntoAClosedHollowBehindACone) {
+    const pipeline::Model model = modelOf("tests/render/solids/hollow.sgm");
+    PictureOptions options = optionsFor(model, 240);
+    options.camera = inside(model.tape, model.lowered->field.bounds);
+    for (const TracedBy by : {TracedBy::Processor, TracedBy::Gpu}) {
+        const Layers layers = layersOf(model, options, by);
+        float bluest = 0;
+        for (const Vec3f& color : layers.color) bluest = std::max(bluest, color.z / color.x);
+        EXPECT_LT(bluest, .7f) << "the lamp is warm; " << (by == TracedBy::Gpu ? "shaders" : "processor");
+    }
+}
+
 }  // namespace
 }  // namespace sgm::render::test

@@ -222,7 +222,8 @@ bool DiscWalk::ask(const CellSpace& space, Question& question) {
             // Nothing of the cell comes into the disc, or nearer to its middle than what did before.
             const float near = std::min(matters() * look_.radius * (t_ + pace_.stride + 2 * cell_.edge), space.margin);
             if (cell_.least >= near && !turn_.active) {
-                if (!sawAll(cell_.least * space.inverseLipschitz, near)) {
+                // From within solid the way leads out of it, and shorter strides would only come near its surface.
+                if (passed_.value >= 0 && !sawAll(cell_.least * space.inverseLipschitz, near)) {
                     pace_.stride = 0.9f * pace_.free;
                     continue;
                 }

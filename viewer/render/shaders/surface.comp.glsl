@@ -69,7 +69,8 @@ DiscSeen lookAtDisc(vec3 p, vec3 direction, float radius, float pixel, int of, f
             // Nothing of the cell comes into the disc, or nearer to its middle than what did before.
             float near = min(matters(seen) * radius * (t + stride + 2.0 * cell.edge), margin);
             if (cell.least >= near && !turning) {
-                if (!sawAll(stride, free, cell.least * inverseLipschitz, near)) {
+                // From within solid the way leads out of it.
+                if (passed >= 0.0 && !sawAll(stride, free, cell.least * inverseLipschitz, near)) {
                     stride = 0.9 * free;
                     continue;
                 }
