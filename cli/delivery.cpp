@@ -167,8 +167,8 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
     if (!products.ok()) return products.error();
     if (const Status s = writeFiles(request, model, *products, scene, figures, context); !s.ok()) return s;
     if (!request.report.empty()) {
-        const std::string json = reportJson(model, meshed, figures.mesh, figures.support, figures.missing, figures.cave,
-                                            context.stages, request.grid.threads);
+        const std::string json = reportJson(model, meshed, figures.mesh, scene, figures.support, figures.missing,
+                                            figures.cave, context.stages, request.grid.threads);
         if (const Status s = pipeline::writeText(request.report, json); !s.ok()) return s;
     }
     if (!request.quiet) printSummary(request, model, *products, scene, meshed.grid, figures, context.stages);

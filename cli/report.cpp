@@ -24,15 +24,23 @@ Json fieldFigures(const Model& model, const MeshedModel& meshed) {
 }
 
 Json meshFigures(const mesh::MeshFigures& f) {
-    return {{"vertices", f.vertices},
-            {"triangles", f.triangles},
-            {"components", f.components},
-            {"boundary_edges", f.boundaryEdges},
-            {"nonmanifold_edges", f.nonmanifoldEdges},
-            {"euler", f.euler},
-            {"volume_m3", f.volume_m3},
-            {"area_m2", f.area_m2},
-            {"bounds", {{f.bounds.lo.x, f.bounds.lo.y, f.bounds.lo.z}, {f.bounds.hi.x, f.bounds.hi.y, f.bounds.hi.z}}}};
+    Json figures{{"vertices", f.vertices},
+                 {"triangles", f.triangles},
+                 {"components", f.components},
+                 {"boundary_edges", f.boundaryEdges},
+                 {"nonmanifold_edges", f.nonmanifoldEdges},
+                 {"euler", f.euler},
+                 {"volume_m3", f.volume_m3},
+                 {"area_m2", f.area_m2}};
+    const Box3f& b = f.bounds;
+    if (!b.empty()) figures["bounds"] = {{b.lo.x, b.lo.y, b.lo.z}, {b.hi.x, b.hi.y, b.hi.z}};
+    return figures;
+}
+
+/// The objects that `place` puts, which the mesh's figures are without.
+Json placedFigures(const mesh::Scene& scene) {
+    return {
+        {"objects", scene.objects.size()}, {"places", scene.instances.size()}, {"triangles", scene.triangleCount()}};
 }
 
 /// Why a solid floats; empty where that isn't known.
@@ -96,7 +104,7 @@ uint64_t peakMemory_bytes() {
 }  // namespace
 
 std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures,
-                       const Support& support, const std::vector<lower::ThinPart>& missing,
+                       const mesh::Scene& scene, const Support& support, const std::vector<lower::ThinPart>& missing,
                        const std::optional<volume::Cave>& cave, const Stages& stages, int threads) {
     const derive::Derivation& d = model.derivation;
     Json json;
@@ -107,6 +115,7 @@ std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh
     json["rules_applied"] = {{"classic", d.classic}, {"morphic", d.morphic}};
     json["field"] = fieldFigures(model, meshed);
     json["mesh"] = meshFigures(figures);
+    if (!scene.empty()) json["placed"] = placedFigures(scene);
     json["pieces"] = support.pieces;
     json["floating"] = floatingFigures(model, support);
     json["missing"] = missingFigures(model, missing);

@@ -87,6 +87,17 @@ TEST_F(Meshes, OfTheShapeAloneHaveTheSameBytesWhateverElseIsAsked) {
         EXPECT_EQ(sgm("build -q " + file + " --resolution 40 -o " + path("e.stl") + edit).code, 0) << edit;
 }
 
+TEST_F(Meshes, ObjectsOfPlaceAreInTheReport) {
+    const std::string file = grammar(
+        "start Row -> size (60, 4, 6) split x { { 6m: place House }* }\n"
+        "start House -> cube size (3, 3, 3)\n");
+    ASSERT_EQ(sgm("build -q " + file + " --resolution 32 -o " + path("a.stl") + " --report " + path("r.json")).code, 0);
+    const Json report = Json::parse(read(path("r.json")));
+    EXPECT_EQ(report["placed"], (Json{{"objects", 1}, {"places", 10}, {"triangles", 120}}));
+    EXPECT_EQ(report["mesh"]["triangles"], 0);
+    EXPECT_FALSE(report["mesh"].contains("bounds")) << "of nothing";
+}
+
 TEST_F(Meshes, AreDividedIntoObjectsOfSymbols) {
     const std::string file = grammar(
         "start A -> cube size 2 : Wall\nrule Wall -> cube size 2 + Post at +y + Post at +x\n"
