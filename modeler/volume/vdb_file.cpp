@@ -74,6 +74,8 @@ Status fillVdb(const std::vector<NamedVolume>& volumes, const std::filesystem::p
     } catch (const std::ios_base::failure&) {
         if (cancelled(progress)) return cancelledError();
         return writeError(target, errno != 0 ? errno : EIO);
+    } catch (const std::bad_alloc&) {
+        return Error{Error::Kind::Budget, fmt::format("cannot write '{}': out of memory", target.string())};
     } catch (const std::exception& e) {
         return writeError(target, e.what());
     }
@@ -102,6 +104,8 @@ Result<Volume> readVdb(const std::filesystem::path& path, const std::string& nam
             if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
                 floats && (name.empty() || grid->getName() == name))
                 return Volume(std::make_shared<Volume::Impl>(Volume::Impl{floats}));
+    } catch (const std::bad_alloc&) {
+        return Error{Error::Kind::Budget, fmt::format("cannot read '{}': out of memory", path.string())};
     } catch (const std::exception& e) {
         return failed(e.what());
     }

@@ -105,6 +105,8 @@ Result<mesh::Mesh> toMesh(const Volume& volume) {
     std::vector<openvdb::Vec4I> quads;
     try {
         openvdb::tools::volumeToMesh(*volume.impl().grid, points, triangles, quads, 0.0, 0.0);
+    } catch (const std::bad_alloc&) {
+        return Error{Error::Kind::Budget, "OpenVDB can't mesh this volume: out of memory"};
     } catch (const std::exception& e) {
         return Error{Error::Kind::Internal, fmt::format("OpenVDB can't mesh this volume: {}", e.what())};
     }
