@@ -50,13 +50,6 @@ struct Scene {
     Animation animation;
 };
 
-/// What NAME=VALUE sets.
-std::string_view nameOf(std::string_view setting) {
-    std::string_view name = setting.substr(0, setting.find('='));
-    while (name.ends_with(' ')) name.remove_suffix(1);
-    return name;
-}
-
 Result<Scene> loadScene(const BuildRequest& request, Context& context) {
     std::vector<std::filesystem::path> inputs;
     const auto grammar = loadGrammar(request.model, context, &inputs);
@@ -67,7 +60,7 @@ Result<Scene> loadScene(const BuildRequest& request, Context& context) {
     if (!animation.ok()) return animation.error();
     for (const Animation::Track& track : animation->tracks)
         for (const std::string& set : request.model.settings)
-            if (const std::string& name = (*grammar)->params[track.param].name; nameOf(set) == name)
+            if (const std::string& name = (*grammar)->params[track.param].name; set.starts_with(name + "="))
                 return Error{Error::Kind::Usage,
                              fmt::format("--set {}: --animate sets '{}' in every frame: leave one out", set, name)};
     const std::vector<Target> targets = targetsOf(request, animation->frames);

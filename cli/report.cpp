@@ -23,6 +23,8 @@ Json fieldFigures(const Model& model, const MeshedModel& meshed) {
             {"surface_cells", meshed.counts.surfaceCells}};
 }
 
+Json boundsJson(const Box3f& b) { return {{b.lo.x, b.lo.y, b.lo.z}, {b.hi.x, b.hi.y, b.hi.z}}; }
+
 Json meshFigures(const mesh::MeshFigures& f) {
     Json figures{{"vertices", f.vertices},
                  {"triangles", f.triangles},
@@ -32,8 +34,7 @@ Json meshFigures(const mesh::MeshFigures& f) {
                  {"euler", f.euler},
                  {"volume_m3", f.volume_m3},
                  {"area_m2", f.area_m2}};
-    const Box3f& b = f.bounds;
-    if (!b.empty()) figures["bounds"] = {{b.lo.x, b.lo.y, b.lo.z}, {b.hi.x, b.hi.y, b.hi.z}};
+    if (!f.bounds.empty()) figures["bounds"] = boundsJson(f.bounds);
     return figures;
 }
 
@@ -70,10 +71,9 @@ Json floatingFigures(const Model& model, const Support& support) {
                       {"rule", s.madeBy == derive::none ? "" : d.grammar->rules[d.steps[s.madeBy].rule].name},
                       {"file", s.span.source ? s.span.source->name() : ""},
                       {"line", s.span.source ? s.span.source->place(s.span.begin).line : 0}};
-        const Box3f& b = f.piece.bounds;
         entry["triangles"] = f.piece.triangles;
         entry["volume_m3"] = f.piece.volume_m3;
-        entry["bounds"] = {{b.lo.x, b.lo.y, b.lo.z}, {b.hi.x, b.hi.y, b.hi.z}};
+        entry["bounds"] = boundsJson(f.piece.bounds);
         if (Json cause = causeOf(model, f.cause); !cause.empty()) entry["cause"] = std::move(cause);
         list.push_back(std::move(entry));
     }

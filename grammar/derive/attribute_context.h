@@ -32,7 +32,7 @@ struct EvaluatedLook {
 struct EvaluatedAttributes : EvaluatedLook {
     Scope scope;    ///< size and axes; the centre comes from the mating
     Vec3d moved_m;  ///< added to where it is placed, in the object's frame
-    Vec3d grown_m;  ///< the same, but for what a joint places: so that a foot stays
+    Vec3d grown_m;  ///< added as well where no joint places it: keeps the foot of a scope that became higher
     double overlap = 0, amount = 0.5, blend_m = 0;
     struct Span {
         Vec3d from_m, to_m;  ///< about the centre of the scope it is measured against, in its axes

@@ -14,8 +14,12 @@ inline constexpr PrimitiveParameter pitch{"pitch",  Kind::Angle,   35 * pi / 180
                                           pi / 180, 85 * pi / 180, "slope of its planes from the level"};
 inline constexpr PrimitiveParameter overhang{"overhang", Kind::Length, 0, 0, 20, "metres that the eaves stand out"};
 inline constexpr PrimitiveParameter fascia{"fascia", Kind::Length, 0, 0, 5, "height of the upright board at the eaves"};
-inline constexpr PrimitiveParameter cover{
-    "cover", Kind::Length, 0, 0, 5, "thickness of a roof that is open below; 0 fills it", {}, false, true};
+inline constexpr PrimitiveParameter thickness(std::string_view name, double fallback, double lo, double hi,
+                                              std::string_view doc) {
+    return {name, Kind::Length, fallback, lo, hi, doc, {}, false, true};
+}
+inline constexpr PrimitiveParameter cover =
+    thickness("cover", 0, 0, 5, "thickness of a roof that is open below; 0 fills it");
 inline constexpr PrimitiveParameter ends{
     "ends",
     Kind::Choice,
@@ -55,7 +59,7 @@ inline constexpr PrimitiveParameter butterflyParameters[] = {
 inline constexpr PrimitiveParameter flatParameters[] = {
     {"slab", Kind::Length, .3, .001, 20, "thickness of the roof"},
     {"parapet", Kind::Length, .9, 0, 20, "height of the parapet above it; 0 for none"},
-    {"thickness", Kind::Length, .25, .001, 20, "of the parapet", {}, false, true}};
+    thickness("thickness", .25, .001, 20, "of the parapet")};
 inline constexpr PrimitiveParameter pyramidRoofParameters[] = {overhang, fascia};
 
 inline constexpr double noPoint = 1000;  // metres: a point of a moulding that was left out
@@ -86,10 +90,10 @@ inline constexpr PrimitiveParameter corniceParameters[] = {
 inline constexpr PrimitiveParameter plinthParameters[] = {
     out(.12), {"slope", Kind::Share, .2, 0, 1, "of its height that leans back to the wall"}, inside};
 inline constexpr PrimitiveParameter stringParameters[] = {out(.08), inside};
-inline constexpr PrimitiveParameter gutterParameters[] = {
-    out(.16), {"thickness", Kind::Length, .02, .001, 1, "of its sheet", {}, false, true}};
+inline constexpr PrimitiveParameter gutterParameters[] = {out(.16),
+                                                          thickness("thickness", .02, .001, 1, "of its sheet")};
 inline constexpr PrimitiveParameter shellParameters[] = {
-    {"wall", Kind::Length, .3, .001, 20, "thickness of the walls", {}, false, true},
+    thickness("wall", .3, .001, 20, "thickness of the walls"),
     {"floor", Kind::Length, .2, 0, 20, "of the floor; 0 for none"},
     {"ceiling", Kind::Length, 0, 0, 20, "of the ceiling; 0 for none"}};
 inline constexpr PrimitiveParameter taperParameters[] = {

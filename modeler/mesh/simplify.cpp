@@ -104,6 +104,16 @@ public:
     /// Whether faults made run() give vertices back.
     bool isRefined() const { return isRefined_; }
 
+    /// The mean length of the mesh's edges, were its triangles equilateral, after run(); metres.
+    double meanEdge() const {
+        double area_m2 = 0;
+        for (const Triangle& t : flat_.triangles) {
+            const Vec3d p = flat_.positions[t.x].as<double>();
+            area_m2 += length(cross(flat_.positions[t.y].as<double>() - p, flat_.positions[t.z].as<double>() - p)) / 2;
+        }
+        return std::sqrt(area_m2 / (std::sqrt(3) / 4 * static_cast<double>(flat_.triangles.size())));
+    }
+
     /// All triangles as they are, after run().
     Mesh keepAll() {
         triangles_.clear();
@@ -147,7 +157,6 @@ private:
     }
 
     const Mesh& mesh_;
-    bool isRefined_ = false;
     const double tolerance_m_, rounding_m_;
     const int threads_;
     Progress* const progress_;
@@ -158,18 +167,8 @@ private:
     std::optional<Decimation> curved_;
     std::optional<PlanarMerge> planar_;
     std::vector<SimpleTriangle> triangles_;  ///< of the result; those of `curved_` first, in its order
+    bool isRefined_ = false;
 };
-
-/// The mean length of a mesh's edges, were its triangles equilateral; metres.
-double edgeOf(const Mesh& mesh) {
-    double area_m2 = 0;
-    const FlatMesh flat = flatten(mesh, 1);
-    for (const Triangle& t : flat.triangles) {
-        const Vec3d p = flat.positions[t.x].as<double>();
-        area_m2 += length(cross(flat.positions[t.y].as<double>() - p, flat.positions[t.z].as<double>() - p)) / 2;
-    }
-    return std::sqrt(area_m2 / (std::max<double>(1, static_cast<double>(flat.triangles.size())) * 0.433));
-}
 
 /// A mesh simplified within the tolerance. Within one as large as the triangles, parts cross one another in many
 /// places, which keep their vertices then: quarters of it, `mostQuarters` at most, may leave fewer, or no faults at
@@ -179,7 +178,6 @@ Result<Mesh> simplifyWithin(const Mesh& mesh, double tolerance_m, double roundin
     const auto extent_m = static_cast<double>(maxComponent(mesh.bounds().size()));
     double within_m = std::min(tolerance_m, std::max(extent_m, rounding_m));
     std::optional<Mesh> best;
-    std::optional<double> edge_m;
     for (int quarter = 0;; ++quarter, within_m /= 4) {
         Simplifier simplifier(mesh, within_m, rounding_m, threads, progress);
         auto made = simplifier.run();
@@ -187,10 +185,9 @@ Result<Mesh> simplifyWithin(const Mesh& mesh, double tolerance_m, double roundin
         if (*made) {
             if (!best || (*made)->triangleCount() < best->triangleCount()) best = std::move(*made);
             if (!simplifier.isRefined()) return std::move(*best);
-            if (!edge_m) edge_m = edgeOf(mesh);
         }
         const bool isLast = quarter == mostQuarters || within_m <= rounding_m;
-        if (best && (isLast || within_m < 0.25 * *edge_m)) return std::move(*best);
+        if (best && (isLast || within_m < 0.25 * simplifier.meanEdge())) return std::move(*best);
         if (isLast) return simplifier.keepAll();
     }
 }

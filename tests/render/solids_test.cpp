@@ -80,14 +80,17 @@ std::vector<uint32_t> partsOf(const mesh::Mesh& mesh, const PictureOptions& opti
     return parts;
 }
 
-Layers layersOf(const pipeline::Model& model, const PictureOptions& options, TracedBy by) {
-    auto painter =
-        FieldPainter::create(model.tape, model.lowered->field.bounds, model.lowered->provenance, 2, nullptr, by);
+Layers layersOf(const eval::Tape& tape, const Box3f& bounds, const Provenance& provenance,
+                const PictureOptions& options, TracedBy by) {
+    auto painter = FieldPainter::create(tape, bounds, provenance, 2, nullptr, by);
     EXPECT_TRUE(painter.ok());
     Layers layers;
     const auto image = painter->draw(options, nullptr, &layers);
     EXPECT_TRUE(image.ok());
     return layers;
+}
+Layers layersOf(const pipeline::Model& model, const PictureOptions& options, TracedBy by) {
+    return layersOf(model.tape, model.lowered->field.bounds, model.lowered->provenance, options, by);
 }
 
 /// Shares of the pixels in which the field's picture and the mesh's differ.
@@ -219,11 +222,7 @@ TEST_F(Solids, NooksAreEvenlyDark) {
     options.camera = {{17, 14, 19}, {3, -.2, .1}, .2};
     options.ground = false;
     options.samples = 1;
-    auto painter =
-        FieldPainter::create(scene.compile(solid), solid.bounds, scene.provenance, 2, nullptr, TracedBy::Processor);
-    ASSERT_TRUE(painter.ok());
-    Layers layers;
-    ASSERT_TRUE(painter->draw(options, nullptr, &layers).ok());
+    const Layers layers = layersOf(scene.compile(solid), solid.bounds, scene.provenance, options, TracedBy::Processor);
     // Pixels that the walls' line crosses, at (2, 0): half of the day is hidden from either wall, and more by this
     // measure.
     size_t crossed = 0;
@@ -287,11 +286,7 @@ TEST_F(Solids, NooksShowThePartOfTheirFace) {
     options.camera = {{9, 3, 9}, {0, 0, 0}, .4};
     options.ground = false;
     options.samples = 1;
-    auto painter =
-        FieldPainter::create(scene.compile(solid), solid.bounds, scene.provenance, 2, nullptr, TracedBy::Processor);
-    ASSERT_TRUE(painter.ok());
-    Layers layers;
-    ASSERT_TRUE(painter->draw(options, nullptr, &layers).ok());
+    const Layers layers = layersOf(scene.compile(solid), solid.bounds, scene.provenance, options, TracedBy::Processor);
     size_t pane = 0, mixed = 0;
     for (size_t i = 0; i < layers.origin.size(); ++i) {
         const Vec3f p = layers.position[i];

@@ -172,7 +172,7 @@ private:
         const size_t each = wide ? 4 : 1;
         std::vector<BatchedEvaluator::Slope> slopes = evaluator.slopesOf(questions, cost);
         cost.light += questions.size();
-        leaveSolid(hits, of, questions, slopes, evaluator, cost);
+        askInFrontAgain(hits, of, questions, slopes, evaluator, cost);
         for (size_t j = 0; j < of.size(); ++j) {
             BatchedEvaluator::Slope mean{0, {0, 0, 0}};
             float bend = 0;
@@ -188,8 +188,9 @@ private:
 
     /// Places that lie in the solid near a seam of two parts have the seam's normal. Those that differ from the others
     /// of their hit, `questions.size() / of.size()` each, are asked again in front of the surface.
-    void leaveSolid(std::span<const Hit> hits, std::span<const size_t> of, const std::vector<Question>& questions,
-                    std::span<BatchedEvaluator::Slope> slopes, BatchedEvaluator& evaluator, TraceCost& cost) const {
+    void askInFrontAgain(std::span<const Hit> hits, std::span<const size_t> of, const std::vector<Question>& questions,
+                         std::span<BatchedEvaluator::Slope> slopes, BatchedEvaluator& evaluator,
+                         TraceCost& cost) const {
         const CellSpace cells = space();
         const Vec3f eye = view_.eye.as<float>();
         const size_t each = of.empty() ? 0 : questions.size() / of.size();

@@ -78,8 +78,8 @@ float valueAt(vec3 p) {
     return side * fieldBy(cell.tape, p);
 }
 
-/// Whether solid lies behind a small value of the field at p, `into` metres deep: as SolidProbe. The
-/// field is asked in one place, for compilers copy the interpreter to each.
+/// Whether solid lies behind a small value of the field at p, `into` metres deep: as SolidProbe. The field is asked in
+/// one place, for compilers copy the interpreter to each.
 bool solidBehind(vec3 p, float value, float into, vec3 direction) {
     vec3 slope = vec3(0.0), q = p + direction * (max(value, 0.0) + into);
     for (int i = direction == vec3(0.0) ? 0 : -1; i < 12; ++i) {
