@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/messages.h"
@@ -41,9 +42,10 @@ void warnOfEye(const pipeline::Model& model, const render::Camera& camera) {
     eval::evaluate(model.tape, {&eye.x, &eye.y, &eye.z, 1}, &value, workspace);
     if (value < 0)
         printMessage(
-            "warning: the eye stands {:.3g} m within the solid at ({:g}, {:g}, {:g}), from where walls are seen "
+            "warning: the eye stands at least {:.3g} m within the solid at ({:g}, {:g}, {:g}), from where walls are "
+            "seen "
             "from within: move it, or write --camera inside\n",
-            -value, camera.eye.x, camera.eye.y, camera.eye.z);
+            -value / std::max(1.f, model.lowered->field.lipschitz), camera.eye.x, camera.eye.y, camera.eye.z);
 }
 
 }  // namespace sgm::cli

@@ -15,6 +15,7 @@
 #include "grammar/pipeline/missing.h"
 #include "grammar/rules/params.h"
 #include "grammar/syntax/parser.h"
+#include "modeler/core/lower_case.h"
 #include "modeler/core/random.h"
 #include "viewer/render/draw.h"
 
@@ -235,7 +236,7 @@ Status mutated(const MutateRequest& request) {
 
 int mutate(MutateRequest request) {
     request.model.quiet = request.quiet;
-    if (!request.output.empty() && !request.output.ends_with(".png"))
+    if (!request.output.empty() && !lowerCase(request.output).ends_with(".png"))
         return fail({Error::Kind::Usage, fmt::format("'{}': sheets are .png", request.output)});
     if (!request.output.empty()) request.model.targets.push_back({"-o", request.output});
     const Status done = mutated(request);

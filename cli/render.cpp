@@ -20,6 +20,7 @@
 #include "cli/watch.h"
 #include "grammar/pipeline/mesh_edits.h"
 #include "modeler/core/conventions.h"
+#include "modeler/core/lower_case.h"
 #include "modeler/core/packages.h"
 #include "viewer/render/draw.h"
 
@@ -71,13 +72,13 @@ Result<render::PictureOptions> parseSize(const std::string& text) {
 /// A mesh with what its triangles are, as it is drawn: with the objects that `place` puts at all their places.
 using DrawnMesh = std::optional<mesh::FlatScene>;
 
-bool isExr(const RenderRequest& request) { return fs::path(request.output).extension() == ".exr"; }
+bool isExr(const RenderRequest& request) { return lowerCase(fs::path(request.output).extension().string()) == ".exr"; }
 
 /// What can be refused before the work.
 Status checkRequest(const RenderRequest& request) {
     const auto wrong = [](std::string why) -> Status { return Error{Error::Kind::Usage, std::move(why)}; };
     const fs::path output = request.output;
-    if (output.extension() != ".png" && output.extension() != ".exr")
+    if (lowerCase(output.extension().string()) != ".png" && !isExr(request))
         return wrong(fmt::format("'{}': pictures are .png, or .exr for floats", request.output));
     if (!request.layers.empty() && !isExr(request))
         return wrong(fmt::format("--aov: layers need a file that holds floats: -o {}",

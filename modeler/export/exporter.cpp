@@ -7,6 +7,7 @@
 #include <new>
 
 #include "modeler/core/atomic_file.h"
+#include "modeler/core/lower_case.h"
 #include "modeler/export/formats.h"
 
 namespace sgm::exporter {
@@ -18,13 +19,6 @@ const auto& table() {
     static const std::array rows{SGM_FORMATS(SGM_LIST)};
 #undef SGM_LIST
     return rows;
-}
-
-/// The name in lower case, by ASCII.
-std::string lowered(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
 }
 
 /// `parts`, each turned to text by `name`, with `separator` between them.
@@ -126,14 +120,14 @@ bool takesPositionsOnly(const Exporter& row, const ExportOptions& options) {
 }
 
 const Exporter* findExporter(std::string_view extension) {
-    const std::string lower = lowered(std::string(extension));
+    const std::string lower = lowerCase(std::string(extension));
     const auto row =
         std::find_if(table().begin(), table().end(), [&](const Exporter& e) { return e.extension == lower; });
     return row == table().end() ? nullptr : row;
 }
 
 const Exporter* exporterFor(const Path& path) {
-    const std::string name = lowered(path.filename().string());
+    const std::string name = lowerCase(path.filename().string());
     const auto row = std::find_if(table().begin(), table().end(), [&](const Exporter& e) {
         return name.size() > e.extension.size() && name.ends_with(e.extension);
     });

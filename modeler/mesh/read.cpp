@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "modeler/core/lower_case.h"
 #include "modeler/core/regular_file.h"
 #include "modeler/mesh/read_formats.h"
 
@@ -22,11 +23,6 @@ struct Format {
 };
 constexpr Format formats[] = {{".obj", readObj}, {".ply", readPly}, {".stl", readStl},
                               {".off", readOff}, {".glb", nullptr}, {".gltf", nullptr}};
-
-std::string lowerCase(std::string text) {
-    for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c);
-    return text;
-}
 
 Error about(const std::filesystem::path& path, const Error& error) {
     if (error.kind == Error::Kind::Cancelled) return error;

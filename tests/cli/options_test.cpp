@@ -48,7 +48,8 @@ TEST_F(Cli, PicturesTellAnEyeInRockAndASectionThatCutsNothing) {
     EXPECT_NE(same.out.find("the eye stands where it looks"), std::string::npos) << same.out;
     const Outcome within = sgm(draw + " --camera 3.5,0,0,0,0,0");
     if (within.out.find("EGL") != std::string::npos) GTEST_SKIP() << "nothing can be drawn here";
-    EXPECT_NE(within.out.find("warning: the eye stands 0.5 m within the solid at (3.5, 0, 0)"), std::string::npos)
+    EXPECT_NE(within.out.find("warning: the eye stands at least 0.5 m within the solid at (3.5, 0, 0)"),
+              std::string::npos)
         << within.out;
     EXPECT_EQ(sgm(draw + " --camera 0,0,0,3,0,0").out.find("warning"), std::string::npos);
     EXPECT_NE(sgm(draw + " --section x=500")

@@ -24,6 +24,17 @@ protected:
     std::string file_;
 };
 
+TEST_F(Render, EndingsMayBeInCapitals) {
+    EXPECT_EQ(sgm("render " + file_ + " --size 8x8 -q -o " + path("a.PNG")).code, 0);
+    EXPECT_EQ(read(path("a.PNG")), read(path("probe.png")));
+    EXPECT_EQ(sgm("render " + file_ + " --size 8x8 -q -o " + path("a.EXR") + " --aov depth").code, 0);
+    const std::string varied = grammar(
+        "param width = 4 in 2..8.0\nparam rounds = .5 in 0..1.0\nstart House -> morph(cube, sphere, rounds) size "
+        "(width, 3, 3)\n");
+    EXPECT_EQ(sgm("mutate " + varied + " --rows 1 --cols 2 --resolution 32 --size 32x32 -q -o " + path("b.Png")).code,
+              0);
+}
+
 TEST_F(Render, LayersGoIntoAnExr) {
     const Outcome run = sgm("render " + file_ + " --size 40x30 -o " + path("a.exr") + " --aov depth,origin");
     EXPECT_EQ(run.code, 0) << run.out;

@@ -1,0 +1,14 @@
+// Words of files and options, compared without regard to capitals.
+#pragma once
+
+#include <string>
+
+namespace sgm {
+
+/// The text with 'A' to 'Z' as 'a' to 'z'; other bytes stay, in any locale. A file's ending is compared by this.
+inline std::string lowerCase(std::string text) {
+    for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c);
+    return text;
+}
+
+}  // namespace sgm
