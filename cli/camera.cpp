@@ -40,12 +40,13 @@ void warnOfEye(const pipeline::Model& model, const render::Camera& camera) {
     float value = 0;
     eval::Workspace workspace;
     eval::evaluate(model.tape, {&eye.x, &eye.y, &eye.z, 1}, &value, workspace);
-    if (value < 0)
-        printMessage(
-            "warning: the eye stands at least {:.3g} m within the solid at ({:g}, {:g}, {:g}), from where walls are "
-            "seen "
-            "from within: move it, or write --camera inside\n",
-            -value / std::max(1.f, model.lowered->field.lipschitz), camera.eye.x, camera.eye.y, camera.eye.z);
+    if (!(value < 0)) return;
+    // The field bounds the distance only where it doesn't jump.
+    const float depth_m = -value / std::max(1.f, model.lowered->field.lipschitz);
+    printMessage(
+        "warning: the eye stands {}within the solid at ({:g}, {:g}, {:g}), from where walls are seen from within: "
+        "move it, or write --camera inside\n",
+        depth_m > 0 ? fmt::format("at least {:.3g} m ", depth_m) : "", camera.eye.x, camera.eye.y, camera.eye.z);
 }
 
 }  // namespace sgm::cli

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "modeler/core/lower_case.h"
 #include "modeler/core/printable.h"
 
 namespace sgm::syntax {
@@ -58,13 +59,6 @@ size_t editDistance(std::string_view a, std::string_view b) {
 std::string messageOf(const Diagnostic& diagnostic) {
     constexpr size_t longest = 2000;
     return shortened(printable(diagnostic.message, true), longest);
-}
-
-std::string lowered(std::string_view word) {
-    std::string out(word);
-    for (char& c : out)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return out;
 }
 
 }  // namespace
@@ -159,12 +153,12 @@ std::string toJson(const Diagnostics& diagnostics) {
 std::string didYouMean(std::string_view word, const std::vector<std::string>& candidates) {
     constexpr size_t longest = 64;
     if (word.empty() || word.size() > longest) return {};
-    const std::string wanted = lowered(word);
+    const std::string wanted = lowerCase(std::string(word));
     std::string best;
     size_t least = std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
         if (candidate.size() > longest || candidate == word) continue;
-        const size_t distance = editDistance(wanted, lowered(candidate));
+        const size_t distance = editDistance(wanted, lowerCase(std::string(candidate)));
         if (distance < least) {
             least = distance;
             best = candidate;

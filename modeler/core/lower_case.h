@@ -1,11 +1,11 @@
-// Words of files and options, compared without regard to capitals.
+// Text that is compared without regard to capitals: endings of files, words that come near a known one.
 #pragma once
 
 #include <string>
 
 namespace sgm {
 
-/// The text with 'A' to 'Z' as 'a' to 'z'; other bytes stay, in any locale. A file's ending is compared by this.
+/// The text with 'A' to 'Z' as 'a' to 'z'; other bytes stay, in any locale.
 inline std::string lowerCase(std::string text) {
     for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c + ('a' - 'A') : c);
     return text;

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "modeler/core/lower_case.h"
 #include "modeler/core/printable.h"
 #include "modeler/core/regular_file.h"
 #include "modeler/plan/clipper_paths.h"
@@ -66,9 +67,7 @@ const std::variant<std::string, double>* Feature::find(std::string_view word) co
 }
 
 Result<Features> readOutlines(const std::filesystem::path& path, const ReadLimits& limits, const Progress* progress) {
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+    const std::string ending = lowerCase(path.extension().string());
     const auto named = [&](const Error& e) {
         return e.kind == Error::Kind::Cancelled
                    ? e
