@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <tuple>
 
+#include "cli/animation.h"
 #include "cli/cave.h"
 #include "cli/commands.h"
 #include "cli/delivery.h"
@@ -50,19 +52,39 @@ Status checkSection(const BuildRequest& request) {
     return Done{};
 }
 
-/// What changes meshes needs a file that holds one.
+/// What changes meshes needs a file that holds one, or a report about one; volumes leave out components as meshes do.
 Status checkEdits(const BuildRequest& request) {
-    if (!needsNoMesh(request) || allFiles(request.out).empty()) return Done{};
-    const std::pair<bool, const char*> edits[] = {{request.edits.smooth > 0, "--smooth"},
-                                                  {request.edits.simplify < 1, "--simplify"},
-                                                  {request.edits.tolerance_m.has_value(), "--tolerance"},
-                                                  {request.edits.keep != mesh::Keep::All, "--keep"},
-                                                  {request.flipNormals, "--flip-normals"}};
-    for (const auto& [asked, option] : edits)
-        if (asked)
+    const auto files = allFiles(request.out);
+    if (!request.report.empty() || request.validate || surveys(request) || files.empty()) return Done{};
+    const auto isMade = [&](auto is) {
+        return std::any_of(files.begin(), files.end(),
+                           [&](const auto& file) { return is(*exporter::exporterFor(file)); });
+    };
+    const bool meshes = isMade([](const exporter::Exporter& row) { return row.wantsMesh(); });
+    const bool volumes = isMade([](const exporter::Exporter& row) { return row.wantsVolume; });
+    const std::pair<bool, const char*> edits[] = {
+        {request.edits.smooth > 0 && !meshes, "--smooth"},
+        {request.edits.simplify < 1 && !meshes, "--simplify"},
+        {request.edits.tolerance_m.has_value() && !meshes, "--tolerance"},
+        {request.edits.keep != mesh::Keep::All && !meshes && !volumes, "--keep"},
+        {request.flipNormals && !meshes, "--flip-normals"}};
+    for (const auto& [vain, option] : edits)
+        if (vain)
             return Error{Error::Kind::Usage,
                          fmt::format("{} changes meshes, and '{}' holds none: leave it out, or add -o model.glb",
-                                     option, allFiles(request.out).front())};
+                                     option, files.front())};
+    return Done{};
+}
+
+/// A number in the name of a file is that of a frame.
+Status checkNames(const BuildRequest& request) {
+    if (!request.animations.empty()) return Done{};
+    for (const Target& target : targetsOf(request, 0))
+        if (frameName(target.file.string(), 0).ok())
+            return Error{Error::Kind::Usage,
+                         fmt::format("{} {}: the name numbers frames: add --animate NAME=FROM..TO:FRAMES, or write a "
+                                     "name without '%'",
+                                     target.option, target.file.string())};
     return Done{};
 }
 
@@ -96,6 +118,7 @@ Status checkRequest(const BuildRequest& request) {
                      "--object-cell: what is asked for is made of one field, with one cell for all; leave it out"};
     if (const Status s = checkSection(request); !s.ok()) return s;
     if (const Status s = checkEdits(request); !s.ok()) return s;
+    if (const Status s = checkNames(request); !s.ok()) return s;
     if (request.agent.empty()) return Done{};
     if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
     if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();

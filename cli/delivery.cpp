@@ -53,6 +53,12 @@ Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, Mes
     if (usuallySimplified && !request.edits.tolerance_m && !isBuiltWith(Package::Cgal) && !request.quiet)
         printMessage("note: {}: the mesh keeps all its triangles\n",
                      missingPackage(Package::Cgal, "simplification").message);
+    if (request.grid.surface == mesh::Surface::Crisp && request.edits.smooth > 0 && request.edits.simplify == 1 &&
+        !request.edits.tolerance_m && !request.quiet)
+        printMessage(
+            "note: --smooth keeps all {} triangles, for what is smooth is no longer flat: --tolerance 5mm or "
+            "--simplify .2 leaves fewer\n",
+            mesh->triangleCount());
     if (request.validate && mesh->triangleCount() > 0)
         if (const Status s = validated(*mesh, context); !s.ok()) return s.error();
     if (request.validate)

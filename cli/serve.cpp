@@ -11,6 +11,7 @@
 #include "cli/requests.h"
 #include "cli/validators.h"
 #include "cli/watch.h"
+#include "modeler/core/lower_case.h"
 #include "modeler/tiles/page.h"
 
 namespace sgm::cli {
@@ -26,7 +27,7 @@ struct ServeOptions {
 
 /// What a file is to a browser.
 const char* typeOf(const fs::path& file) {
-    const std::string ending = file.extension().string();
+    const std::string ending = lowerCase(file.extension().string());
     for (const auto& [known, type] : {std::pair(".html", "text/html; charset=utf-8"),
                                       {".js", "text/javascript; charset=utf-8"},
                                       {".json", "application/json"},

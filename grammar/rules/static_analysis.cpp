@@ -290,25 +290,33 @@ void findShadowed(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
     }
 }
 
+bool takes(const Attribute& a, syntax::ArgumentType type) {
+    return !a.args.empty() && !a.operation->arguments.empty() && a.operation->arguments[0].type == type;
+}
+
+bool givesSize(const Attribute& a) { return takes(a, syntax::ArgumentType::Size); }
+
+/// Warns of a share among the sizes and moves of an element whose scope is that of a start, 1 m.
+void findSharesOfNothing(const Element& element, const std::vector<Value>& params, syntax::Diagnostics& diagnostics) {
+    for (const Attribute& a : element.attributes) {
+        const bool moves = a.operation->phase == Operation::Phase::Scope && takes(a, syntax::ArgumentType::Vector);
+        if (!givesSize(a) && !moves) continue;
+        const auto value = fold(a.args[0], params);
+        if (value ? isShare(*value) : holdsShare(a.args[0]))
+            diagnostics.warning(a.span, "a share of what? A start's own scope is 1m",
+                                "write lengths, such as '.5m' for 50%");
+    }
+}
+
 void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
     for (uint32_t s = 0; s < grammar.starts.size(); ++s) {
         const std::vector<Value> params = valuesOf(grammar, s);
         for (const auto& chain : grammar.starts[s].body.siblings) {
             if (chain.empty() || chain[0].kind != Element::Kind::Shape || chain[0].content.empty()) continue;
-            const auto takes = [](const Attribute& a, syntax::ArgumentType type) {
-                return !a.args.empty() && !a.operation->arguments.empty() && a.operation->arguments[0].type == type;
-            };
-            const auto sizes = [&](const Attribute& a) { return takes(a, syntax::ArgumentType::Size); };
-            if (std::any_of(chain[0].prefix.begin(), chain[0].prefix.end(), sizes)) continue;
-            for (const Attribute& a : chain[0].attributes) {
-                const bool moves =
-                    a.operation->phase == Operation::Phase::Scope && takes(a, syntax::ArgumentType::Vector);
-                if (!sizes(a) && !moves) continue;
-                const auto value = fold(a.args[0], params);
-                if (value ? isShare(*value) : holdsShare(a.args[0]))
-                    diagnostics.warning(a.span, "a share of what? A start's own scope is 1m",
-                                        "write lengths, such as '.5m' for 50%");
-            }
+            if (std::any_of(chain[0].prefix.begin(), chain[0].prefix.end(), givesSize)) continue;
+            for (const Element& element : chain)
+                if (&element == &chain[0] || (element.inMatchedFrame && !element.on))
+                    findSharesOfNothing(element, params, diagnostics);
         }
     }
 }

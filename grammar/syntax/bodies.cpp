@@ -45,11 +45,16 @@ bool acceptBar(Cursor& cursor) {
     return true;
 }
 
-/// { case {| case} }; `sample` is a label that fits here, for hints.
-std::vector<Case> readBlock(Cursor& cursor, std::string_view where, std::string_view sample) {
+/// { case {| case} } after `word`; `sample` is a label that fits here, for hints.
+std::vector<Case> readBlock(Cursor& cursor, std::string_view word, std::string_view sample) {
     const Token open = cursor.peek();
     std::vector<Case> cases;
-    if (!cursor.expect("{", where)) return cases;
+    const std::string after = quoted(word);
+    const std::string hint = atAttribute(cursor)
+                                 ? "write " + quoted(plain(cursor.peekText()) + " …") + " before " + after
+                             : cursor.at("(") ? "the parts stand in '{ … }'"
+                                              : "";
+    if (!cursor.expect("{", "after " + after, hint)) return cases;
     if (cursor.at("}")) cursor.fail("the block is empty", "write " + quoted(plain(sample) + ": …") + " in it");
     do cases.push_back(readCase(cursor, sample));
     while (acceptBar(cursor));
@@ -133,6 +138,9 @@ Case readCase(Cursor& cursor, std::string_view sample) {
         readLabel(cursor, part);
         const SourceSpan label = cursor.since(first.begin);
         if (cursor.accept(":", Token::Role::Suffix)) {
+            if (cursor.at(Token::Kind::Number) && part.label && isSolid(*part.label))
+                cursor.fail("a number stands before the body that it is about",
+                            "write " + quoted(plain(cursor.peekText()) + ": " + plain(label.text())));
             part.body = std::make_shared<Body>(readBody(cursor));
         } else if (part.label && isSolid(*part.label) && (cursor.at("|") || cursor.at("}"))) {
             cursor.complain(label, quoted(label.text()) + " has no label before it",
@@ -213,7 +221,7 @@ void readControl(Cursor& cursor, Element& element) {
         element.kind = Element::Kind::Choose;
         if (cursor.at(Token::Kind::Word) && isSeries(cursor.peekText()))
             element.variable = readName(cursor, "a way to choose");
-        element.cases = readBlock(cursor, "after 'choose'", "1");
+        element.cases = readBlock(cursor, "choose", "1");
         return;
     }
     element.kind = word == "for" ? Element::Kind::For : word == "while" ? Element::Kind::While : Element::Kind::When;
@@ -303,15 +311,14 @@ Attribute readAttribute(Cursor& cursor) {
     attribute.name = {plain(row.name), cursor.span(word)};
     attribute.operation = &row;
     readArguments(cursor, row, attribute);
-    const std::string where = "after '" + plain(row.name) + "'";
     if (row.block.isBody) {
         Case whole;
         const uint32_t begin = cursor.peek().begin;
-        whole.body = readBracedBody(cursor, where);
+        whole.body = readBracedBody(cursor, "after " + quoted(row.name));
         whole.span = cursor.since(begin);
         attribute.cases.push_back(std::move(whole));
     } else if (row.hasBlock()) {
-        attribute.cases = readBlock(cursor, where, row.block.label);
+        attribute.cases = readBlock(cursor, row.name, row.block.label);
     }
     if (row.traits.takesSettings && cursor.at("{")) attribute.settings = readSettings(cursor);
     attribute.span = cursor.since(word.begin);

@@ -79,8 +79,8 @@ bool Cursor::close(const Token& open) {
                  quoted("(" + std::string(text(previous(1))) + ", " + std::string(peekText()) + " …)"));
         return false;
     }
-    return expect(closing,
-                  "to close " + quoted(opening) + " of line " + std::to_string(source_.place(open.begin).line));
+    return expect(closing, "to close " + quoted(opening) + " of line " + std::to_string(source_.place(open.begin).line),
+                  opening == "{" && at(",") ? "what stands in '{ … }' is set apart by '|'" : "");
 }
 
 std::string Cursor::found() const { return done() ? "the end of the declaration" : quoted(peekText()); }

@@ -9,8 +9,9 @@ Result<TextureSets> makeTexture(const ExportInput& input) {
     sets.charts = chartTexture(option(input, "uv", "scope"), *input.mesh, *input.provenance);
     const std::string_view texels = option(input, "lightmap", "none");
     if (texels == "none") return sets;
-    if (sets.empty())
+    if (option(input, "uv", "scope") == "none")
         return Error{Error::Kind::Usage, "option 'lightmap' is a second set of texture coordinates: leave out uv=none"};
+    if (sets.empty()) return sets;  // nor has the mesh any triangles
     auto light =
         LightMap::make(*input.mesh, input.objects, static_cast<int>(*numberOf(texels)), input.progress, sets.charts);
     if (!light.ok()) return light.error();

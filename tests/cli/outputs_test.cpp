@@ -35,6 +35,31 @@ TEST_F(Cli, OldNamesOfOptionsWorkAndSayTheNewOnes) {
     for (const char* now : {"--format-option", "--validate"}) EXPECT_NE(help.find(now), std::string::npos) << now;
 }
 
+TEST_F(Cli, EditsWithoutAMeshAndNumbersWithoutFramesAreTold) {
+    const std::string start = "build examples/joints.sgm --resolution 32 ";
+    for (const char* edit : {"--smooth 2", "--simplify .5", "--tolerance 5mm", "--flip-normals"}) {
+        const Outcome vain = sgm(start + edit + " -o " + path("a.vdb"));
+        EXPECT_EQ(vain.code, 2) << vain.out;
+        EXPECT_NE(vain.out.find("a.vdb' holds none"), std::string::npos) << vain.out;
+    }
+    EXPECT_EQ(sgm(start + "--keep largest -o " + path("a.vdb")).code, 0);
+    const Outcome numbered = sgm(start + "-o " + path("a_%04d.glb"));
+    EXPECT_EQ(numbered.code, 2) << numbered.out;
+    EXPECT_NE(numbered.out.find("add --animate"), std::string::npos) << numbered.out;
+    const Outcome smoothed = sgm(start + "--smooth 2 -o " + path("a.glb"));
+    EXPECT_EQ(smoothed.code, 0);
+    EXPECT_NE(smoothed.out.find("--smooth keeps all "), std::string::npos) << smoothed.out;
+    EXPECT_EQ(sgm(start + "--smooth 2 --tolerance 5mm -o " + path("a.glb")).out.find("keeps all"), std::string::npos);
+}
+
+TEST_F(Cli, ALightMapIsThatOfObjectsWhereTheModelHasNoMeshOfItsOwn) {
+    const std::string town =
+        grammar("start Town -> size 8 Plot\nrule Plot -> place House\nstart House -> cube size 4\n");
+    const Outcome run = sgm("build " + town + " --resolution 32 --format-option lightmap=256 -o " + path("a.gltf"));
+    ASSERT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(read(path("a.gltf")).find("TEXCOORD_1"), std::string::npos);
+}
+
 TEST_F(Cli, CollidersGoIntoFilesThatHoldThem) {
     const std::string start = "build examples/joints.sgm --resolution 32 ";
     const Outcome run =

@@ -46,6 +46,9 @@ TEST(Told, SharesOfAStartInSums) {
     EXPECT_EQ(told("start A -> cube size (10, 3m + 30%, 5m)\n"),
               "2:17 a share of what? A start's own scope is 1m; write lengths, such as '.5m' for 50%\n");
     EXPECT_EQ(told("start A -> cube size (10, 100%, 5m)\n"), "");
+    EXPECT_EQ(told("start A -> cube size 4m + sphere size 50% at +y\n"),
+              "2:34 a share of what? A start's own scope is 1m; write lengths, such as '.5m' for 50%\n");
+    EXPECT_EQ(told("start A -> cube size 4m + sphere size 50% at +y on last\n"), "");
 }
 
 TEST(Told, SizesAndRangesThatAreNone) {
