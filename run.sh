@@ -9,6 +9,7 @@
 #   ./run.sh site [FOLDER]        makes a site of docs/ with search in out/site (it wants mkdocs)
 #   ./run.sh fuzz [TIME] [TARGET…]  runs the fuzz targets of tests/fuzz/run.sh (10m each) and counts what they have had
 cd "$(dirname "$0")"
+PRESET=release
 . cmake/setup.sh
 case "${1:-}" in
   bench)

@@ -160,9 +160,11 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
     if (wantsFigures(request)) {
         figures.mesh = mesh::measure(*mesh);
         figures.support = pipeline::supportOf(model, *mesh, meshed.grid.cell_m);
-        context.timed("gaps", [&] {
-            return pipeline::findCauses(model, *mesh, meshed.grid.cell_m, figures.missing, figures.support), Done{};
+        const Status caused = context.timed("gaps", [&] {
+            return pipeline::findCauses(model, *mesh, meshed.grid.cell_m, figures.missing, figures.support,
+                                        context.progress);
         });
+        if (!caused.ok()) return caused;
     }
     if (request.flipNormals) mesh::turnInsideOut(*mesh);
     const auto products =

@@ -1,4 +1,4 @@
-# Shared by run.sh and test.sh: installs what is missing and builds the Release preset. Sourced, from the repo root.
+# Shared by run.sh and test.sh: installs what is missing and builds a preset (Release). Sourced, from the repo root.
 set -eu
 
 packages="g++ cmake ninja-build ccache pkg-config
@@ -21,13 +21,15 @@ install_missing() {
     { tail -n 20 build/apt.log; echo "Installing failed: see build/apt.log" >&2; exit 1; }
 }
 
-# build TARGET…: configures once, for a short first build, then builds; quiet unless something is to be done or fails.
+# build TARGET…: configures $PRESET once, for a short first build, then builds; quiet unless something is to be done or fails.
+PRESET="${PRESET:-release}"
 build() {
-  [ -f build/release/build.ninja ] || cmake --preset release -DSGM_UNITY=ON >build/configure.log 2>&1 ||
-    { tail -n 30 build/configure.log; exit 1; }
-  ninja -C build/release -n "$@" | grep -q 'no work to do' && return 0
+  [ -f "build/$PRESET/build.ninja" ] || cmake --preset "$PRESET" -DSGM_UNITY=ON >"build/configure-$PRESET.log" 2>&1 ||
+    { tail -n 30 "build/configure-$PRESET.log"; exit 1; }
+  ninja -C "build/$PRESET" -n "$@" | grep -q 'no work to do' && return 0
   echo "Building (a first build takes some minutes)…"
-  ninja -C build/release -j "${JOBS:-2}" "$@" >build/build.log 2>&1 || { grep -A 12 -m 5 'FAILED\|error' build/build.log; exit 1; }
+  ninja -C "build/$PRESET" -j "${JOBS:-2}" "$@" >"build/build-$PRESET.log" 2>&1 ||
+    { grep -A 12 -m 5 'FAILED\|error' "build/build-$PRESET.log"; exit 1; }
 }
 
 # npm's manifold-3d, the judge of `bench --meshes`, where npm is there to fetch it; bench says so where it isn't.

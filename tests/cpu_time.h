@@ -1,4 +1,5 @@
-// CPU time in tests: other work on the machine doesn't count, instrumented code is given ten times as long.
+// Time in tests: that of the processor, for other work on the machine doesn't count. Slow builds have ten times as
+// long.
 #pragma once
 
 #include <pthread.h>
@@ -6,14 +7,22 @@
 
 namespace sgm {
 
-/// A test's bound in CPU seconds, as it holds for a plain build.
-constexpr double cpuSeconds(double bound) {
-#ifdef __SANITIZE_ADDRESS__
-    return 10 * bound;
+/// Whether this build is instrumented: slower, and its programs map far more memory than they use.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool isSanitized = true;
 #else
-    return bound;
+inline constexpr bool isSanitized = false;
 #endif
-}
+
+/// Whether this build checks what a release doesn't, and takes several times as long.
+#ifdef NDEBUG
+inline constexpr bool isSlow = isSanitized;
+#else
+inline constexpr bool isSlow = true;
+#endif
+
+/// A test's bound in seconds, as it holds for a release.
+constexpr double boundSeconds(double bound) { return isSlow ? 10 * bound : bound; }
 
 /// CPU seconds that a clock has counted: of the process (CLOCK_PROCESS_CPUTIME_ID) or of one thread.
 inline double secondsOf(clockid_t clock) {

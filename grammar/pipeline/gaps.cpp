@@ -52,7 +52,7 @@ public:
 
     OriginId originOf(uint32_t triangle) const { return mesh::FlatMesh::originOf(mesh_.keys[triangle]); }
 
-    std::optional<Closest> find(const mesh::ConnectedComponent& piece, double cell_m) const {
+    std::optional<Closest> find(const mesh::ConnectedComponent& piece, double cell_m, Progress* progress) const {
         const Surface* own = surfaceOf(piece);
         if (!own) return {};
         std::set<uint32_t> inside{own->id};  // its cavities aren't others
@@ -62,7 +62,8 @@ public:
         const auto isOwn = [&](uint32_t s) { return s == own->id; };
         Nearest theirs, ours;
         Vec3d from;
-        forPoints(*own, cell_m, [&](Vec3d p) {
+        forPoints(*own, cell_m, progress, [&](Vec3d p) {
+            if (theirs.squared_m2 == 0) return;
             const double before = theirs.squared_m2;
             tree_.nearest(p, isOther, theirs);
             if (theirs.squared_m2 < before) from = p;
@@ -101,22 +102,27 @@ private:
         return best;
     }
 
-    /// Points on the surface, a cell apart, or farther where there would be too many.
+    /// Points on the surface, a cell apart, or farther where there would be too many. Stops early when cancelled.
     template <class Visit>
-    void forPoints(const Surface& surface, double cell_m, Visit visit) const {
+    void forPoints(const Surface& surface, double cell_m, Progress* progress, Visit visit) const {
         constexpr double mostPoints = 50'000;
         const Vec3d size = surface.box.size();
         const double area = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
         const double step = std::max(cell_m, std::sqrt(area / mostPoints));
         const size_t stride = std::max<size_t>(1, surface.triangles.size() / static_cast<size_t>(mostPoints));
-        for (size_t i = 0; i < surface.triangles.size(); i += stride) {
+        const auto parts = [&](double length) { return std::clamp(std::ceil(length / step), 1.0, 256.0); };
+        for (size_t i = 0; i < surface.triangles.size() && !cancelled(progress); i += stride) {
+            // Rows along the longest side: a needle has one or two.
             const uint32_t t = surface.triangles[i];
-            const Vec3d a = tree_.corner(t, 0), ab = tree_.corner(t, 1) - a, ac = tree_.corner(t, 2) - a;
-            const double longest = std::sqrt(std::max({dot(ab, ab), dot(ac, ac), dot(ac - ab, ac - ab)}));
-            const int n = static_cast<int>(std::clamp(std::ceil(longest / step), 1.0, 256.0));
-            for (int u = 0; u <= n; ++u)
-                for (int v = 0; u + v <= n; ++v)
-                    visit(a + ab * (static_cast<double>(u) / n) + ac * (static_cast<double>(v) / n));
+            Vec3d a = tree_.corner(t, 0), b = tree_.corner(t, 1), c = tree_.corner(t, 2);
+            const auto isShort = [&] { return dot(b - a, b - a) < std::max(dot(c - b, c - b), dot(a - c, a - c)); };
+            for (int turn = 0; turn < 2 && isShort(); ++turn) std::swap(a, b), std::swap(b, c);
+            const double base = length(b - a), height = base > 0 ? length(cross(b - a, c - a)) / base : 0;
+            const double rows = parts(height);
+            for (double v = 0; v <= rows; ++v) {
+                const double left = 1 - v / rows, columns = parts(base * left);
+                for (double u = 0; u <= columns; ++u) visit(a + (b - a) * (left * u / columns) + (c - a) * (v / rows));
+            }
         }
     }
 
@@ -253,7 +259,7 @@ private:
 /// Whether the field joins what the mesh shows apart, near its nearest points.
 bool meets(const eval::Tape& tape, const Closest& closest, double cell_m) {
     if (closest.width_m > 2 * cell_m) return false;
-    if (closest.width_m <= 0) return true;
+    if (closest.width_m <= static_cast<double>(tape.tieMargin())) return true;
     const Vec3d inward = (closest.from - closest.to) * (0.5 * cell_m / closest.width_m);
     return Surroundings(tape, (closest.from + closest.to) * 0.5, cell_m)
         .joins(closest.from + inward, closest.to - inward);
@@ -266,9 +272,9 @@ std::string partText(const Model& model, OriginId origin) {
 
 }  // namespace
 
-void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const std::vector<lower::ThinPart>& missing,
-                Support& support) {
-    if (support.floating.empty() || mesh.hasPositionsOnly()) return;
+Status findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const std::vector<lower::ThinPart>& missing,
+                  Support& support, Progress* progress) {
+    if (support.floating.empty() || mesh.hasPositionsOnly()) return Done{};
     const ThinLinks links(model, missing);
     std::optional<GapFinder> gaps;
     for (size_t i = 0; i < std::min(support.floating.size(), mostPieces); ++i) {
@@ -278,7 +284,8 @@ void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const 
             continue;
         }
         if (!gaps) gaps.emplace(mesh);
-        const auto closest = gaps->find(f.piece, static_cast<double>(cell_m));
+        const auto closest = gaps->find(f.piece, static_cast<double>(cell_m), progress);
+        if (cancelled(progress)) return cancelledError();
         if (!closest) continue;
         const OriginId ours = gaps->originOf(closest->ours), theirs = gaps->originOf(closest->theirs);
         const bool touches = meets(model.tape, *closest, static_cast<double>(cell_m));
@@ -289,6 +296,7 @@ void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const 
                    ours,
                    theirs};
     }
+    return Done{};
 }
 
 std::string causeText(const Model& model, const FloatCause& cause, float cell_m) {

@@ -11,9 +11,9 @@ namespace sgm::pipeline {
 
 /// Finds the causes of the first few floating pieces and puts them into `support`. A gap is measured between the
 /// nearest points of the mesh; `missing` are the parts that the mesh lacks at cells of `cell_m`. About .1 s for a
-/// million triangles.
-void findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const std::vector<lower::ThinPart>& missing,
-                Support& support);
+/// million triangles. Error::Cancelled.
+Status findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, const std::vector<lower::ThinPart>& missing,
+                  Support& support, Progress* progress);
 
 /// "1 m from 'House/Storey' (house.sgm:4) at (0.00, 4.50, 0.00)" and the like, for a message behind a colon; empty
 /// where no cause was found.

@@ -80,7 +80,8 @@ Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const mesh::Me
                                                  context.threads, context.progress);
     if (!missing.ok()) return missing.error();
     Support support = supportOf(model, mesh, grid.cell_m);
-    findCauses(model, mesh, grid.cell_m, *missing, support);
+    if (const Status s = findCauses(model, mesh, grid.cell_m, *missing, support, context.progress); !s.ok())
+        return s.error();
     std::vector<MeshWarning> warnings = floatingWarnings(model, support, grid.cell_m);
     for (MeshWarning& thin : missingWarnings(model, grid, *missing)) warnings.push_back(std::move(thin));
     return warnings;

@@ -5,15 +5,10 @@
 #include <csignal>
 
 #include "tests/cli/program.h"
+#include "tests/cpu_time.h"
 
 namespace sgm::cli {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool isSanitized = true;  // slower, and maps far more memory than it uses
-#else
-constexpr bool isSanitized = false;
-#endif
 
 class Hostile : public Cli {
 protected:
@@ -22,7 +17,7 @@ protected:
         const auto started = std::chrono::steady_clock::now();
         const Outcome run = sgm(arguments, before);
         const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
-        EXPECT_LT(spent.count(), isSanitized ? 100 : 10) << arguments;
+        EXPECT_LT(spent.count(), boundSeconds(10)) << arguments;
         return run;
     }
     /// A cube of 1 m with its low corner at a place, as OBJ.
@@ -322,7 +317,7 @@ TEST_F(Hostile, ParsingAndCheckingEndAtOnce) {
             const Outcome run = sgm(command, std::string("timeout --preserve-status -s ") + signal + " .4 ");
             const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - started;
             EXPECT_TRUE(run.code == 130 || run.code == 128 + SIGTERM) << command << run.code << run.out;
-            EXPECT_LT(spent.count(), isSanitized ? 10 : 1) << command;
+            EXPECT_LT(spent.count(), boundSeconds(1)) << command;
         }
     EXPECT_FALSE(fs::exists(path("x.ply")));
 }
@@ -341,7 +336,7 @@ TEST_F(Hostile, ASystemWithoutThreadsIsToldOf) {
 }
 
 TEST_F(Hostile, LibrariesOfVolumesThatFindNoRoomEndInAMessage) {
-    if (isSanitized) GTEST_SKIP() << "memory isn't limited under AddressSanitizer";
+    if (isSanitized) GTEST_SKIP() << "memory isn't limited in instrumented programs";
     // They start threads while they are loaded, and end the program where they get none.
     const std::string file = grammar("start A -> sphere\n"), out = path("x.vdb");
     for (const int limit_kB : {182'000, 188'000, 242'000, 314'000}) {
@@ -371,7 +366,7 @@ TEST_F(Hostile, ClosedAndFullStreamsHarmNoFile) {
 }
 
 TEST_F(Hostile, MemoryThatRunsOutIsAMessage) {
-    if (isSanitized) GTEST_SKIP() << "memory isn't limited under AddressSanitizer";
+    if (isSanitized) GTEST_SKIP() << "memory isn't limited in instrumented programs";
     const std::string out = path("x.ply"), was = "as it was";
     scratch_.write("x.ply", was);
     for (const char* limits : {"--max-memory 300MB", "--max-memory 300MB --threads 1", "--max-memory 500MB --threads 8",

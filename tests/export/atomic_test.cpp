@@ -109,7 +109,7 @@ TEST_P(Atomic, AWriteThatIsCancelledOnItsWayStopsSoon) {
     watcher.join();
     ASSERT_FALSE(written.ok());
     EXPECT_EQ(written.error().kind, Error::Kind::Cancelled);
-    EXPECT_LT(late, cpuSeconds(.05));
+    EXPECT_LT(late, boundSeconds(.05));
     EXPECT_EQ(contentOf(target), "the old file");
 }
 

@@ -2,11 +2,10 @@
 // meaning when it is formatted.
 #include <gtest/gtest.h>
 
-#include <ctime>
-
 #include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
+#include "tests/cpu_time.h"
 #include "tests/fuzz_keys.h"
 #include "tests/syntax/dump.h"
 #include "tests/syntax/mutate.h"
@@ -20,10 +19,10 @@ namespace {
 std::string judge(const std::string& text, size_t& parsed) {
     const SourcePtr source = makeSource(text);
     Diagnostics diagnostics;
-    const std::clock_t begin = std::clock();
+    const double begin = secondsOf(threadClock());
     const Ast ast = parse(source, operations::table(), diagnostics);
-    const double ms = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    if (ms > 50) return "parsing took " + std::to_string(ms) + " ms";
+    const double ms = 1e3 * (secondsOf(threadClock()) - begin);
+    if (ms > 1e3 * boundSeconds(.05)) return "parsing took " + std::to_string(ms) + " ms";
     for (const Diagnostic& d : diagnostics.all()) {
         if (d.span.source != source.get() || d.span.begin > d.span.end || d.span.end > text.size())
             return "a problem outside the file: " + d.message;
