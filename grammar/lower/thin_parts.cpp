@@ -4,151 +4,25 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <numbers>
 
 #include "grammar/derive/lift.h"
+#include "grammar/lower/presence.h"
+#include "grammar/lower/scope_lines.h"
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
 
 namespace sgm::lower {
 namespace {
 
-constexpr int fewestLines = 4, mostLines = 16;    ///< along an axis across the thin one
 constexpr int fewestSteps = 16, mostSteps = 128;  ///< between the samples on a line
-constexpr double lineReach = 1.02;                ///< of a scope's half extent, so that its own faces are crossed
 constexpr int halvings = 6;                       ///< of a step around a crossing
 constexpr int fewestCrossings = 3;                ///< of a part that isn't buried
 constexpr double leastMissing = 0.1;              ///< share of the surface that a part in the list lacks
+constexpr double mostlyFree = 0.9;                ///< of the lines through a plate meet both its faces
+constexpr double leastMissingArea = 0.2;          ///< share of a plate's area, which is known less well
 constexpr double leaningWall = 1.42;              ///< cells that hold a wall of any plan or a shell are thinner by this
 constexpr size_t partsPerGroup = 64;              ///< of a parallel loop
 constexpr size_t partsPerTape = 8;                ///< that are shortened from one tape
-
-/// Where the i-th of n lines passes a half extent: denser towards the ends, for a bar may run through a house and show
-/// these alone; off the middle, so that no line lies in a plane of symmetry.
-double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }
-
-/// Calls visit(share) for upright lines through a scope whose walls or shell are `wall_m` thick. `share` is where the
-/// line passes, in half extents, 0 along y; the outermost ones stand in walls along the scope's sides.
-template <class Visit>
-void eachUprightLine(const derive::Scope& scope, double wall_m, Visit&& visit) {
-    const auto along = [&](int i, int axis) {
-        const double outermost = std::max(1 - wall_m / scope.size[axis], 0.0);
-        return i == 0 ? -outermost : i + 1 == mostLines ? outermost : shareOf(i, mostLines);
-    };
-    for (int j = 0; j < mostLines; ++j)
-        for (int i = 0; i < mostLines; ++i) visit(Vec3d{along(i, 0), 0, along(j, 2)});
-}
-
-/// Calls visit(share, axis) for each line through the scope along its thin axes until one call returns false; whether
-/// none did. `share` is where the line passes, in half extents, 0 along the axis.
-template <class Visit>
-bool eachLine(const derive::Scope& scope, double cell_m, Visit&& visit) {
-    const auto linesAlong = [&](int across) {
-        return std::clamp(static_cast<int>(std::ceil(scope.size[across] / cell_m)), fewestLines, mostLines);
-    };
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(scope.size[axis] < cell_m || scope.size[axis] == minComponent(scope.size))) continue;
-        const int u = (axis + 1) % 3, v = (axis + 2) % 3, alongU = linesAlong(u), alongV = linesAlong(v);
-        for (int j = 0; j < alongV; ++j)
-            for (int i = 0; i < alongU; ++i) {
-                Vec3d share{};
-                share[u] = shareOf(i, alongU), share[v] = shareOf(j, alongV);
-                if (!visit(share, axis)) return false;
-            }
-    }
-    return true;
-}
-
-/// Numbers but 0, in a table of a power of two with room for twice as many: they are asked for millions of times.
-class NumberSet {
-public:
-    void insert(uint64_t number) {
-        if (2 * (count_ + 1) > slots_.size()) grow();
-        count_ += place(number);
-    }
-    bool contains(uint64_t number) const {
-        size_t at = number & (slots_.size() - 1);
-        while (slots_[at] != 0 && slots_[at] != number) at = (at + 1) & (slots_.size() - 1);
-        return slots_[at] != 0;
-    }
-
-private:
-    bool place(uint64_t number) {
-        size_t at = number & (slots_.size() - 1);
-        while (slots_[at] != 0 && slots_[at] != number) at = (at + 1) & (slots_.size() - 1);
-        const bool isNew = slots_[at] == 0;
-        slots_[at] = number;
-        return isNew;
-    }
-    void grow() {
-        std::vector<uint64_t> old(4 * slots_.size());
-        old.swap(slots_);
-        for (const uint64_t number : old)
-            if (number != 0) place(number);
-    }
-
-    std::vector<uint64_t> slots_ = std::vector<uint64_t>(1024);
-    size_t count_ = 0;
-};
-
-/// Cells as large as the mesh's that hold triangles of thin parts.
-class Presence {
-public:
-    Presence(const mesh::Mesh& mesh, const std::vector<bool>& isThin, float cell_m) : perMetre_(1 / cell_m) {
-        std::vector<const Vec3f*> positions;
-        positions.reserve(mesh.vertexCount());
-        for (const mesh::Chunk& c : mesh.chunks)
-            for (const Vec3f& p : c.positions) positions.push_back(&p);
-        uint64_t last = 0;
-        for (const mesh::Chunk& c : mesh.chunks)
-            for (size_t t = 0; t < c.origins.size(); ++t) {
-                if (!isThin[c.origins[t]]) continue;
-                const mesh::Triangle corners = c.inMesh(c.triangles[t]);
-                for (int i = 0; i < 3; ++i) {
-                    const uint64_t key = keyOf(cellOf(*positions[corners[i]]), c.origins[t]);
-                    if (key != last) cells_.insert(key);
-                    last = key;
-                }
-            }
-    }
-    /// Whether a triangle of the part has a corner within a cell or so.
-    bool isNear(Vec3f p, OriginId part) const {
-        const Vec3i cell = cellOf(p);
-        if (cells_.contains(keyOf(cell, part))) return true;
-        for (int z = -1; z <= 1; ++z)
-            for (int y = -1; y <= 1; ++y)
-                for (int x = -1; x <= 1; ++x)
-                    if (cells_.contains(keyOf(cell + Vec3i{x, y, z}, part))) return true;
-        return false;
-    }
-
-    /// Whether triangles of the part lie along every line through its scope, which is thinner than a cell there: then
-    /// nothing of it is missing, whatever the field says.
-    bool isWhole(const derive::Scope& scope, OriginId part, double cell_m) const {
-        return eachLine(scope, cell_m, [&](Vec3d share, int axis) {
-            for (const double end : {0., -lineReach, lineReach}) {
-                share[axis] = end;
-                if (!isNear(scope.point(share).as<float>(), part)) return false;
-            }
-            return true;
-        });
-    }
-
-private:
-    Vec3i cellOf(Vec3f p) const {
-        const auto floor = [&](float c) { return static_cast<int>(std::floor(c * perMetre_)); };
-        return {floor(p.x), floor(p.y), floor(p.z)};
-    }
-    static uint64_t keyOf(Vec3i cell, OriginId part) {
-        const auto bits = [](int c) { return static_cast<uint64_t>(static_cast<uint32_t>(c)); };
-        uint64_t key = part * 0xd6e8feb86659fd93u;
-        for (const int c : {cell.x, cell.y, cell.z}) key = (key ^ bits(c)) * 0x9e3779b97f4a7c15u, key ^= key >> 29;
-        return key | 1;
-    }
-
-    const float perMetre_;
-    NumberSet cells_;
-};
 
 /// Points as the evaluation takes them.
 struct Rows {
@@ -166,7 +40,47 @@ struct Candidate {
     double wall_m = 0;  ///< thickness of its walls or shell, where these are what is thin; else 0
     double missing = 0;
     bool isWhole = false;  ///< told by the mesh alone
+    int plateAxis = -1;    ///< across it, where the scope is thin along one axis alone
+    double facing_m2 = 0;  ///< of a plate: what its triangles in the mesh cover, seen across it
 };
+
+/// The one axis along which a scope is thin; −1 for bars and for what is thin all over.
+int plateAxis(const derive::Scope& scope, double cell_m) {
+    int found = -1;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(scope.size[axis] < cell_m || scope.size[axis] == minComponent(scope.size))) continue;
+        if (found >= 0) return -1;
+        found = axis;
+    }
+    return found;
+}
+
+/// Both faces of a plate.
+double facesOf(const derive::Scope& scope, int axis) {
+    return 2 * scope.size[(axis + 1) % 3] * scope.size[(axis + 2) % 3];
+}
+
+/// Sets `facing_m2` of all plates.
+void measureFacing(const mesh::Mesh& mesh, std::span<Candidate> parts, size_t partCount) {
+    std::vector<Candidate*> of(partCount, nullptr);
+    for (Candidate& c : parts)
+        if (c.plateAxis >= 0) of[c.part] = &c;
+    std::vector<const Vec3f*> positions;
+    positions.reserve(mesh.vertexCount());
+    for (const mesh::Chunk& c : mesh.chunks)
+        for (const Vec3f& p : c.positions) positions.push_back(&p);
+    for (const mesh::Chunk& c : mesh.chunks)
+        for (size_t t = 0; t < c.origins.size(); ++t) {
+            Candidate* const plate = of[c.origins[t]];
+            if (!plate) continue;
+            const mesh::Triangle corners = c.inMesh(c.triangles[t]);
+            const Vec3f p = *positions[corners[0]];
+            const Vec3d twice = cross(*positions[corners[1]] - p, *positions[corners[2]] - p).as<double>();
+            Vec3d across{};
+            across[plate->plateAxis] = 1;
+            plate->facing_m2 += 0.5 * std::abs(dot(twice, plate->scope->axes * across));
+        }
+}
 
 /// The box that a part is looked for in.
 Box3f boxOf(const derive::Scope& scope) {
@@ -249,7 +163,19 @@ private:
             if (owners_[i] != part) continue;
             ++met, lacks += !presence_.isNear(middles_[i], part);
         }
-        return met < fewestCrossings ? 0 : static_cast<double>(lacks) / met;
+        if (met < fewestCrossings) return 0;
+        return std::max(static_cast<double>(lacks) / met, missingOfPlate(candidate, met));
+    }
+
+    /// What the mesh lacks of a plate that stands free, by area: of a turned one it may show posts, which lie so near
+    /// to each other that there are triangles everywhere. 0 for other parts.
+    double missingOfPlate(const Candidate& candidate, int met) const {
+        if (candidate.plateAxis < 0) return 0;
+        int lines = 0;
+        eachLine(*candidate.scope, cell_m_, [&](Vec3d, int) { return ++lines, true; });
+        const double free = met / (2.0 * lines);
+        const double lacks = 1 - candidate.facing_m2 / (free * facesOf(*candidate.scope, candidate.plateAxis));
+        return free < mostlyFree || lacks < leastMissingArea ? 0 : lacks;
     }
 
     /// Leaves in `to` what matters in each box.
@@ -354,12 +280,17 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
         if (!isFlat && !(wall_m / leaningWall < cell)) continue;
         scopes.push_back(derive::liftedScope(derivation, model.shapeOf[part]));
         thin.push_back({part, &scopes.back(), wall_m});
+        if (isFlat) thin.back().plateAxis = plateAxis(scopes.back(), cell);
         isThin[part] = true;
     }
     if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     const Presence presence(mesh, isThin, cell_m);
+    measureFacing(mesh, thin, model.shapeOf.size());
     parallelFor(thin.size(), threads, nullptr, [&](size_t i, int) {
-        thin[i].isWhole = thin[i].wall_m == 0 && presence.isWhole(*thin[i].scope, thin[i].part, cell);
+        const derive::Scope& scope = *thin[i].scope;
+        const int axis = thin[i].plateAxis;
+        const bool covers = axis < 0 || thin[i].facing_m2 >= (1 - leastMissingArea) * facesOf(scope, axis);
+        thin[i].isWhole = thin[i].wall_m == 0 && covers && presence.isWhole(scope, thin[i].part, cell);
     });
     std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
     orderByPlace(thin);

@@ -225,26 +225,32 @@ Typed checkTuple(CheckContext& ctx, Place& place, const Written& e) {
     return result;
 }
 
+Typed textOf(const Written& e) {
+    Value text;
+    text.kind = Value::Kind::Text;
+    text.text = e.text;
+    return makeTyped(e.span, std::move(text));
+}
+
+Typed colorOf(const Written& e) {
+    const Vec3d linear = linearFromHex(static_cast<uint32_t>(e.number));
+    Value color;
+    color.kind = Value::Kind::Color;
+    color.count = 3;
+    for (int i = 0; i < 3; ++i) color.n[static_cast<size_t>(i)] = linear[i];
+    return makeTyped(e.span, color);
+}
+
 Typed infer(CheckContext& ctx, Place& place, const Written& e) {
     switch (e.kind) {
         case Written::Kind::Number:
             return numberOf(e);
         case Written::Kind::Floating:
             return fail(ctx, e.span, "'~' is a size in a split, not a value");
-        case Written::Kind::Text: {
-            Value text;
-            text.kind = Value::Kind::Text;
-            text.text = e.text;
-            return makeTyped(e.span, std::move(text));
-        }
-        case Written::Kind::Color: {
-            const Vec3d linear = linearFromHex(static_cast<uint32_t>(e.number));
-            Value color;
-            color.kind = Value::Kind::Color;
-            color.count = 3;
-            for (int i = 0; i < 3; ++i) color.n[static_cast<size_t>(i)] = linear[i];
-            return makeTyped(e.span, color);
-        }
+        case Written::Kind::Text:
+            return textOf(e);
+        case Written::Kind::Color:
+            return colorOf(e);
         case Written::Kind::Name:
             return checkName(ctx, place, e);
         case Written::Kind::Member:

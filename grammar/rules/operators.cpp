@@ -239,19 +239,18 @@ Typed checkUnary(CheckContext& ctx, Place& place, const Written& e) {
     return makeApplied(ctx, Expr::Kind::Unary, Fn::Neg, e.span, std::move(args));
 }
 
-Typed checkBinary(CheckContext& ctx, Place& place, const Written& e) {
-    const BinaryRow& row = binaryRow(e.text);
-    const bool equality = row.fn == Fn::Equal || row.fn == Fn::NotEqual;
-    const auto isWordParam = [&](const Written& side) {
-        if (side.kind == Written::Kind::Name && ctx.names.maps.contains(side.text)) return true;
-        const auto param = side.kind == Written::Kind::Name ? ctx.names.params.find(side.text) : ctx.names.params.end();
-        return param != ctx.names.params.end() && !ctx.grammar.params[param->second].choices.empty();
-    };
-    std::vector<Typed> args(2);
-    const size_t first = equality && isWordParam(e.args[1]) ? 1 : 0;
-    args[first] = checkExpression(ctx, place, e.args[first]);
-    args[1 - first] = equality ? checkComparedWord(ctx, place, e.args[1 - first], args[first].type)
-                               : checkExpression(ctx, place, e.args[1 - first]);
+namespace {
+
+bool isEquality(Fn fn) { return fn == Fn::Equal || fn == Fn::NotEqual; }
+
+bool isWordParam(const CheckContext& ctx, const Written& side) {
+    if (side.kind == Written::Kind::Name && ctx.names.maps.contains(side.text)) return true;
+    const auto param = side.kind == Written::Kind::Name ? ctx.names.params.find(side.text) : ctx.names.params.end();
+    return param != ctx.names.params.end() && !ctx.grammar.params[param->second].choices.empty();
+}
+
+/// The operator over what was made of its operands.
+Typed applyBinary(CheckContext& ctx, Place& place, const Written& e, const BinaryRow& row, std::vector<Typed> args) {
     const Typed &a = args[0], &b = args[1];
     const Value::Kind ka = a.type.like.kind, kb = b.type.like.kind;
     bool good = true;
@@ -269,12 +268,25 @@ Typed checkBinary(CheckContext& ctx, Place& place, const Written& e) {
             good = fail(ctx, e.span,
                         fmt::format("{} times {} is nothing a grammar can measure", describe(a.type), describe(b.type)))
                        .type.known;
-    } else if (!(equality && ka == kb && !a.type.numeric())) {
+    } else if (!(isEquality(row.fn) && ka == kb && !a.type.numeric())) {
         if (row.fn != Fn::Rem) mixShares(place, args[0], args[1]);
         good = sameType(ctx, a, b, row.verb);
     }
     if (!good) return {{}, Type::unknown()};
     return makeApplied(ctx, Expr::Kind::Binary, row.fn, e.span, std::move(args));
+}
+
+}  // namespace
+
+// As little as possible stays on the stack while operands are checked: there are up to 400 one in the other.
+Typed checkBinary(CheckContext& ctx, Place& place, const Written& e) {
+    const BinaryRow& row = binaryRow(e.text);
+    std::vector<Typed> args(2);
+    const size_t first = isEquality(row.fn) && isWordParam(ctx, e.args[1]) ? 1 : 0;
+    args[first] = checkExpression(ctx, place, e.args[first]);
+    args[1 - first] = isEquality(row.fn) ? checkComparedWord(ctx, place, e.args[1 - first], args[first].type)
+                                         : checkExpression(ctx, place, e.args[1 - first]);
+    return applyBinary(ctx, place, e, row, std::move(args));
 }
 
 }  // namespace sgm::rules

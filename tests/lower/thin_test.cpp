@@ -51,6 +51,18 @@ TEST(LostParts, AreExposedAndNotBuried) {
     EXPECT_EQ(paths, (std::vector<std::string>{"S/cube", "S/cube/cube[2]", "S/cube/cube[3]"}));
 }
 
+/// Of a turned wall thinner than a cell the mesh shows posts, as near to each other as its cells are.
+TEST(LostParts, OfATurnedWallAreTold) {
+    for (const int degrees : {5, 15, 30}) {
+        const Lowered model("grammar 2\nstart A -> cube size (40, 9, .3) turn " + std::to_string(degrees) +
+                            "deg + cube size (70, 1, 70) move (0, -5, 0)\n");
+        const std::vector<lower::ThinPart> missing = missingAt(model, 70 / 128.f);
+        ASSERT_EQ(missing.size(), 1u) << degrees;
+        EXPECT_GT(missing[0].missing, .25) << degrees;
+        EXPECT_TRUE(missingAt(model, static_cast<float>(missing[0].cell_m)).empty()) << degrees;
+    }
+}
+
 TEST_P(Thin, PartsOfTwoCellsAreAllThere) {
     const auto& [name, thin] = GetParam();
     const Lowered model = scene(name, thin, 2.0 * 40 / 128);

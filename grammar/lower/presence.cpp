@@ -1,0 +1,89 @@
+#include "grammar/lower/presence.h"
+
+#include <cmath>
+
+#include "grammar/lower/scope_lines.h"
+
+namespace sgm::lower {
+
+void NumberSet::insert(uint64_t number) {
+    if (2 * (count_ + 1) > slots_.size()) grow();
+    count_ += place(number);
+}
+
+bool NumberSet::contains(uint64_t number) const {
+    size_t at = number & (slots_.size() - 1);
+    while (slots_[at] != 0 && slots_[at] != number) at = (at + 1) & (slots_.size() - 1);
+    return slots_[at] != 0;
+}
+
+bool NumberSet::place(uint64_t number) {
+    size_t at = number & (slots_.size() - 1);
+    while (slots_[at] != 0 && slots_[at] != number) at = (at + 1) & (slots_.size() - 1);
+    const bool isNew = slots_[at] == 0;
+    slots_[at] = number;
+    return isNew;
+}
+
+void NumberSet::grow() {
+    std::vector<uint64_t> old(4 * slots_.size());
+    old.swap(slots_);
+    for (const uint64_t number : old)
+        if (number != 0) place(number);
+}
+
+Presence::Presence(const mesh::Mesh& mesh, const std::vector<bool>& isThin, float cell_m) : perMetre_(4 / cell_m) {
+    std::vector<const Vec3f*> positions;
+    positions.reserve(mesh.vertexCount());
+    for (const mesh::Chunk& c : mesh.chunks)
+        for (const Vec3f& p : c.positions) positions.push_back(&p);
+    uint64_t last = 0;
+    for (const mesh::Chunk& c : mesh.chunks)
+        for (size_t t = 0; t < c.origins.size(); ++t) {
+            if (!isThin[c.origins[t]]) continue;
+            const mesh::Triangle corners = c.inMesh(c.triangles[t]);
+            const Vec3f p = *positions[corners[0]], q = *positions[corners[1]] - p, r = *positions[corners[2]] - p;
+            constexpr int parts = 4;  // of each side
+            for (int u = 0; u <= parts; ++u)
+                for (int v = 0; u + v <= parts; ++v) {
+                    const Vec3f at = p + q * (static_cast<float>(u) / parts) + r * (static_cast<float>(v) / parts);
+                    const uint64_t key = keyOf(cellOf(at), c.origins[t]);
+                    if (key != last) cells_.insert(key);
+                    last = key;
+                }
+        }
+}
+
+bool Presence::isNear(Vec3f p, OriginId part) const {
+    const Vec3i cell = cellOf(p);
+    if (cells_.contains(keyOf(cell, part))) return true;
+    for (int z = -1; z <= 1; ++z)
+        for (int y = -1; y <= 1; ++y)
+            for (int x = -1; x <= 1; ++x)
+                if (cells_.contains(keyOf(cell + Vec3i{x, y, z}, part))) return true;
+    return false;
+}
+
+bool Presence::isWhole(const derive::Scope& scope, OriginId part, double cell_m) const {
+    return eachLine(scope, cell_m, [&](Vec3d share, int axis) {
+        for (const double end : {0., -lineReach, lineReach}) {
+            share[axis] = end;
+            if (!isNear(scope.point(share).as<float>(), part)) return false;
+        }
+        return true;
+    });
+}
+
+Vec3i Presence::cellOf(Vec3f p) const {
+    const auto floor = [&](float c) { return static_cast<int>(std::floor(c * perMetre_)); };
+    return {floor(p.x), floor(p.y), floor(p.z)};
+}
+
+uint64_t Presence::keyOf(Vec3i cell, OriginId part) {
+    const auto bits = [](int c) { return static_cast<uint64_t>(static_cast<uint32_t>(c)); };
+    uint64_t key = part * 0xd6e8feb86659fd93u;
+    for (const int c : {cell.x, cell.y, cell.z}) key = (key ^ bits(c)) * 0x9e3779b97f4a7c15u, key ^= key >> 29;
+    return key | 1;
+}
+
+}  // namespace sgm::lower

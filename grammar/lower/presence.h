@@ -1,0 +1,48 @@
+// Where a mesh has triangles of which part.
+// Enters: a mesh with origins. Leaves: answers about places. Assumes triangles no larger than a cell.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "grammar/derive/shapes.h"
+#include "modeler/core/provenance.h"
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::lower {
+
+/// Numbers but 0, in a table of a power of two with room for twice as many: they are asked for millions of times.
+class NumberSet {
+public:
+    /// Amortised O(1).
+    void insert(uint64_t number);
+    bool contains(uint64_t number) const;
+
+private:
+    bool place(uint64_t number);
+    void grow();
+
+    std::vector<uint64_t> slots_ = std::vector<uint64_t>(1024);
+    size_t count_ = 0;
+};
+
+/// Quarters of the mesh's cells that hold triangles of thin parts.
+class Presence {
+public:
+    /// O(triangles of those parts). `isThin` by part; cells in metres.
+    Presence(const mesh::Mesh& mesh, const std::vector<bool>& isThin, float cell_m);
+    /// Whether a triangle of the part lies within a quarter of a cell to a half.
+    bool isNear(Vec3f p, OriginId part) const;
+    /// Whether triangles of the part lie along every line through its scope, which is thinner than a cell of `cell_m`
+    /// there: then nothing of it is missing, whatever the field says.
+    bool isWhole(const derive::Scope& scope, OriginId part, double cell_m) const;
+
+private:
+    Vec3i cellOf(Vec3f p) const;
+    static uint64_t keyOf(Vec3i cell, OriginId part);
+
+    const float perMetre_;
+    NumberSet cells_;
+};
+
+}  // namespace sgm::lower

@@ -1,0 +1,52 @@
+// Lines through a scope, along which thin parts are looked for.
+// Enters: a scope. Leaves: where the lines pass. Assumes nothing.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "grammar/derive/shapes.h"
+
+namespace sgm::lower {
+
+inline constexpr int fewestLines = 4, mostLines = 16;  ///< along an axis across the thin one
+inline constexpr double lineReach = 1.02;              ///< of a scope's half extent, so that its own faces are crossed
+
+/// Where the i-th of n lines passes a half extent: denser towards the ends, for a bar may run through a house and show
+/// these alone; off the middle, so that no line lies in a plane of symmetry.
+inline double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }
+
+/// Calls visit(share) for upright lines through a scope whose walls or shell are `wall_m` thick. `share` is where the
+/// line passes, in half extents, 0 along y; the outermost ones stand in walls along the scope's sides.
+template <class Visit>
+void eachUprightLine(const derive::Scope& scope, double wall_m, Visit&& visit) {
+    const auto along = [&](int i, int axis) {
+        const double outermost = std::max(1 - wall_m / scope.size[axis], 0.0);
+        return i == 0 ? -outermost : i + 1 == mostLines ? outermost : shareOf(i, mostLines);
+    };
+    for (int j = 0; j < mostLines; ++j)
+        for (int i = 0; i < mostLines; ++i) visit(Vec3d{along(i, 0), 0, along(j, 2)});
+}
+
+/// Calls visit(share, axis) for each line through the scope along its thin axes until one call returns false; whether
+/// none did. `share` is where the line passes, in half extents, 0 along the axis.
+template <class Visit>
+bool eachLine(const derive::Scope& scope, double cell_m, Visit&& visit) {
+    const auto linesAlong = [&](int across) {
+        return std::clamp(static_cast<int>(std::ceil(scope.size[across] / cell_m)), fewestLines, mostLines);
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(scope.size[axis] < cell_m || scope.size[axis] == minComponent(scope.size))) continue;
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3, alongU = linesAlong(u), alongV = linesAlong(v);
+        for (int j = 0; j < alongV; ++j)
+            for (int i = 0; i < alongU; ++i) {
+                Vec3d share{};
+                share[u] = shareOf(i, alongU), share[v] = shareOf(j, alongV);
+                if (!visit(share, axis)) return false;
+            }
+    }
+    return true;
+}
+
+}  // namespace sgm::lower
