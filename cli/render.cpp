@@ -42,6 +42,7 @@ struct FogRequest {
 struct RenderRequest {
     ModelRequest model;
     GridRequest grid{.resolution = 256};
+    GridRequest warned;  ///< that of warnings about the mesh: as asked for, or as `sgm build` usually takes it
     MeshEdits edits;
     std::string output, size = "960x720", view = "field", camera, rays = "best";
     std::vector<std::string> layers;
@@ -244,7 +245,7 @@ Status drawAll(const RenderRequest& request) {
     if (!model.ok()) return model.error();
     if (!request.print.quiet) printWarnings(*model);
     if (!request.print.quiet && request.view == "field")
-        if (const Status told = warnAsBuild(*model, request.model, request.grid.threads, watch.progress()); !told.ok())
+        if (const Status told = warnAsBuild(*model, request.model, request.warned, watch.progress()); !told.ok())
             return told;
     if (const std::string note = pipeline::sketchNote(model->derivation); !note.empty() && !request.print.quiet)
         printMessage("note: {}; add --view mesh\n", note);
@@ -361,7 +362,11 @@ void addRender(CLI::App& app, int& exitCode) {
         "  sgm render examples/tower.sgm -o mesh.png --view mesh --wires\n"
         "  sgm render examples/tower.sgm -o tower.exr --aov depth,normal,origin\n  sgm render examples/tower.sgm -o "
         "turn_%04d.png --turntable 36");
-    command->callback([request, &exitCode] { exitCode = render(*request); });
+    command->callback([request, command, &exitCode] {
+        const bool isAsked = command->count("--resolution") + command->count("--cell") > 0;
+        request->warned = isAsked ? request->grid : GridRequest{.threads = request->grid.threads};
+        exitCode = render(*request);
+    });
 }
 
 }  // namespace sgm::cli

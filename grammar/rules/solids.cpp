@@ -167,11 +167,14 @@ Solid checkPrimitive(CheckContext& ctx, Place& place, const Written& e, const fi
                                         : known.empty() ? fmt::format("'{}' takes no parameters", row.name)
                                                         : fmt::format("'{}' takes no more than {} parameters: {}",
                                                                       row.name, known.size(), fmt::join(known, ", "));
+            const std::string near = nearestHint(name, known);
             const bool isExtent = name.empty() ? known.empty() : std::ranges::count(extents, name) > 0;
             ctx.diagnostics.error(
                 e.args[i].span, message,
                 isExtent ? fmt::format("its extents are those of its scope: write '{} size (x, y, z)'", row.name)
-                         : nearestHint(name, known));
+                : near.empty() && !name.empty() && !known.empty()
+                    ? fmt::format("its parameters are {}", fmt::join(known, ", "))
+                    : near);
             break;
         }
         if (given[index])

@@ -57,6 +57,8 @@ constexpr ForeignWord foreignAttributes[] = {
     {"material", "write 'of' and a material, as 'of stone', or 'color #c8b090'"},
     {"roughness", "write 'rough'"},
     {"metalness", "write 'metal'"},
+    {"repeat",
+     "a rule repeats: 'rule Storey repeat 3 -> …'; copies are 'for k in 1..3 { … }', parts of a split '{ … }3'"},
     {"comp", "write 'faces { front: Wall | side: Wall | top: Roof }'"},
     {"s", "write 'size'"},
     {"t", "write 'move'"},

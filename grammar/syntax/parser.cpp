@@ -28,7 +28,9 @@ void refuse(Cursor& cursor) {
                     : near.empty() ? "later lines of a declaration are indented"
                                    : "did you mean " + quoted(near) + "?");
     } else {
-        cursor.fail("unexpected " + cursor.found(), nearestWord(cursor.operations(), cursor.peekText()));
+        const std::string foreign = foreignAttributeHint(cursor.peekText());
+        cursor.fail("unexpected " + cursor.found(),
+                    foreign.empty() ? nearestWord(cursor.operations(), cursor.peekText()) : foreign);
     }
 }
 

@@ -169,5 +169,19 @@ TEST_F(Cli, PartsThatTheCellsOfAnObjectLackAreTold) {
     EXPECT_EQ(drawn.out.find("--resolution"), std::string::npos) << drawn.out;
 }
 
+TEST_F(Cli, PicturesWarnAtTheCellsThatAreAskedFor) {
+    const std::string file = grammar(
+        "start A -> cube size (20, 1, 1) + cube size (.05, 2, .05) move (.05, 1, .03)"
+        " + cube size (.05, 2, .05) move (3.05, 1, .13)\n");
+    const auto drawn = [&](const std::string& cells) {
+        return sgm("render " + file + " --size 32x32 " + cells + " -o " + path("a.png")).out;
+    };
+    if (drawn("").find("EGL") != std::string::npos) GTEST_SKIP() << "nothing can be drawn here";
+    EXPECT_NE(drawn("").find("the mesh's cells of 0.156 m"), std::string::npos);
+    EXPECT_EQ(drawn("--resolution 420").find("thinner"), std::string::npos);
+    EXPECT_NE(drawn("--resolution 64").find("the mesh's cells of 0.313 m"), std::string::npos);
+    EXPECT_EQ(drawn("--cell .04").find("thinner"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace sgm::cli

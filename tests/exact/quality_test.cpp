@@ -120,8 +120,9 @@ TEST(Quality, CountsOpenEdgesAndCrossings) {
     open.chunks[0].triangles.resize(10);
     open.chunks[0].origins.resize(10);
     EXPECT_EQ(measureQuality(open, twoLooks(), model, 0.1, false).boundaryEdges, 4u);
-    for (Vec3f p : boxMesh({0, 0, 0}, {3, 3, 3}).chunks[0].positions) crossed.chunks[0].positions.push_back(p);
-    for (const mesh::Triangle t : boxMesh(lo, hi).chunks[0].triangles)
+    const mesh::Mesh larger = boxMesh({0, 0, 0}, {3, 3, 3}), other = boxMesh(lo, hi);
+    for (const Vec3f p : larger.chunks[0].positions) crossed.chunks[0].positions.push_back(p);
+    for (const mesh::Triangle t : other.chunks[0].triangles)
         crossed.chunks[0].triangles.push_back({t.x + 8, t.y + 8, t.z + 8});
     crossed.chunks[0].origins.resize(24, 1);
     EXPECT_GT(*measureQuality(crossed, twoLooks(), model, 0.1, true).crossings, 5u);
