@@ -29,6 +29,7 @@ Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, mesh::Surface
         if (!result.ok()) return result;
         mesh = std::move(*result);
     }
+    if (surface == mesh::Surface::Crisp) mesh::turnNormalsOutward(mesh);
     return mesh;
 }
 

@@ -68,6 +68,37 @@ Result<Mesh> decimate(const Mesh& mesh, double ratio, Progress* progress) {
     return fromOpenMesh(half, false);
 }
 
+void turnNormalsOutward(Mesh& mesh) {
+    std::vector<const Chunk*> owners;  // by vertex of the whole mesh
+    owners.reserve(mesh.vertexCount());
+    for (const Chunk& c : mesh.chunks) owners.insert(owners.end(), c.positions.size(), &c);
+    std::vector<CornerNormal> kept;
+    for (Chunk& chunk : mesh.chunks) {
+        if (chunk.hasPositionsOnly()) continue;
+        kept.clear();
+        auto own = chunk.cornerNormals.begin();
+        for (uint32_t t = 0; t < chunk.triangles.size(); ++t) {
+            const Triangle corners = chunk.inMesh(chunk.triangles[t]);
+            const auto place = [&](int k) {
+                return owners[corners[k]]->positions[corners[k] - owners[corners[k]]->firstVertex];
+            };
+            const Vec3f face = normalized(cross(place(1) - place(0), place(2) - place(0)));
+            for (int k = 0; k < 3; ++k) {
+                const uint32_t corner = 3 * t + static_cast<uint32_t>(k);
+                const bool isOwn = own != chunk.cornerNormals.end() && own->corner == corner;
+                const Vec3f normal =
+                    isOwn ? own->normal : owners[corners[k]]->normals[corners[k] - owners[corners[k]]->firstVertex];
+                if (dot(face, normal) < 0)
+                    kept.push_back({corner, face});
+                else if (isOwn)
+                    kept.push_back(*own);
+                own += isOwn;
+            }
+        }
+        chunk.cornerNormals = kept;
+    }
+}
+
 void turnInsideOut(Mesh& mesh) {
     for (Chunk& chunk : mesh.chunks) {
         for (Triangle& t : chunk.triangles) std::swap(t.y, t.z);

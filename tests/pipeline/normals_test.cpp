@@ -3,8 +3,10 @@
 
 #include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/load.h"
+#include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/meshing.h"
 #include "modeler/mesh/chunk.h"
+#include "modeler/mesh/corners.h"
 
 namespace sgm::pipeline {
 namespace {
@@ -46,6 +48,39 @@ TEST(Normals, NoCornerLooksIntoTheSolidWherePartsStandOnOneAnother) {
         }
     EXPECT_GT(corners, 100u);
     EXPECT_EQ(inward, 0u);
+}
+
+TEST(Normals, NoCornerOfAFileLooksThroughItsTriangle) {
+    // Walls thinner than a cell, turned: vertices of either face are a cell apart at most.
+    syntax::Diagnostics problems;
+    const auto grammar =
+        load("walls.sgm", "grammar 2\nstart A -> cube size (40, 9, .3) turn 15deg + cube size (30, 1, 30)\n", problems);
+    ASSERT_TRUE(grammar);
+    Context context{nullptr, 2};
+    const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
+    ASSERT_TRUE(model.ok());
+    const mesh::Grid grid = gridOf(*model, 100);
+    auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
+    ASSERT_TRUE(meshed.ok());
+    const auto mesh = edited(std::move(meshed->mesh), {}, mesh::Surface::Crisp, grid.cell_m, context);
+    ASSERT_TRUE(mesh.ok());
+    const std::vector<mesh::Triangle> triangles = mesh::gatherTriangles(*mesh);
+    const mesh::CornerNormalTable corners = mesh::collectCornerNormals(*mesh);
+    std::vector<Vec3f> positions, normals;
+    for (const mesh::Chunk& c : mesh->chunks) {
+        positions.insert(positions.end(), c.positions.begin(), c.positions.end());
+        normals.insert(normals.end(), c.normals.begin(), c.normals.end());
+    }
+    size_t through = 0;
+    for (size_t t = 0; t < triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const Vec3f p = positions[triangles[t][0]];
+            const Vec3f face = cross(positions[triangles[t][1]] - p, positions[triangles[t][2]] - p);
+            const uint32_t own = corners.empty() ? mesh::noIndex : corners.of[t][k];
+            through += dot(face, own == mesh::noIndex ? normals[triangles[t][k]] : corners.normals[own]) < 0;
+        }
+    EXPECT_GT(triangles.size(), 100u);
+    EXPECT_EQ(through, 0u);
 }
 
 }  // namespace
