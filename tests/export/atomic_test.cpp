@@ -105,8 +105,9 @@ TEST_P(Atomic, AWriteThatIsCancelledOnItsWayStopsSoon) {
         progress.cancel();
     });
     const Status written = write(input, target);
-    const double late = secondsOf(writer) - asked;
+    const double ended = secondsOf(writer);
     watcher.join();
+    const double late = ended - asked;
     ASSERT_FALSE(written.ok());
     EXPECT_EQ(written.error().kind, Error::Kind::Cancelled);
     EXPECT_LT(late, boundSeconds(.05));
