@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 /// What the command prints.
 struct PrintRequest {
     bool stats = false, quiet = false;
+    GridRequest warned;  ///< that of warnings about the mesh: as asked for, or as `sgm build` usually takes it
 };
 
 struct FogRequest {
@@ -42,7 +43,6 @@ struct FogRequest {
 struct RenderRequest {
     ModelRequest model;
     GridRequest grid{.resolution = 256};
-    GridRequest warned;  ///< that of warnings about the mesh: as asked for, or as `sgm build` usually takes it
     MeshEdits edits;
     std::string output, size = "960x720", view = "field", camera, rays = "best";
     std::vector<std::string> layers;
@@ -245,7 +245,7 @@ Status drawAll(const RenderRequest& request) {
     if (!model.ok()) return model.error();
     if (!request.print.quiet) printWarnings(*model);
     if (!request.print.quiet && request.view == "field")
-        if (const Status told = warnAsBuild(*model, request.model, request.warned, watch.progress()); !told.ok())
+        if (const Status told = warnAsBuild(*model, request.model, request.print.warned, watch.progress()); !told.ok())
             return told;
     if (const std::string note = pipeline::sketchNote(model->derivation); !note.empty() && !request.print.quiet)
         printMessage("note: {}; add --view mesh\n", note);
@@ -364,7 +364,7 @@ void addRender(CLI::App& app, int& exitCode) {
         "turn_%04d.png --turntable 36");
     command->callback([request, command, &exitCode] {
         const bool isAsked = command->count("--resolution") + command->count("--cell") > 0;
-        request->warned = isAsked ? request->grid : GridRequest{.threads = request->grid.threads};
+        request->print.warned = isAsked ? request->grid : GridRequest{.threads = request->grid.threads};
         exitCode = render(*request);
     });
 }

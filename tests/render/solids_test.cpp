@@ -274,28 +274,6 @@ TEST_F(Solids, SeamsOfAWallHaveItsNormal) {
     EXPECT_EQ(turned, 0u);
 }
 
-/// Beyond the edge of a step, within a pixel, a ray that passes over it is as near to the riser behind it.
-TEST_F(Solids, EdgesShowNoFaceBehindThem) {
-    Scene scene;
-    for (int k = 1; k <= 8; ++k) scene.add("cube", {0, .25 * k, .75 * k}, {20, .5 * k, 20 - 1.5 * k}, {.7f, .7f, .7f});
-    const field::Field solid = scene.sum();
-    PictureOptions options;
-    options.width = 240, options.height = 180;
-    options.camera = {{0, 9, 14}, {1, 4, 4}, .6};
-    options.ground = false;
-    for (const TracedBy by : {TracedBy::Processor, TracedBy::Gpu}) {
-        const Layers layers = layersOf(scene.compile(solid), solid.bounds, scene.provenance, options, by);
-        size_t seen = 0, away = 0;
-        for (size_t i = 0; i < layers.normal.size(); ++i) {
-            if (layers.depth[i] == Layers::farAway) continue;
-            ++seen;
-            away += dot(layers.normal[i], Vec3f{0, 9, 14} - layers.position[i]) < 0;
-        }
-        EXPECT_GT(seen, 10000u);
-        EXPECT_EQ(away, 0u);
-    }
-}
-
 /// A bar on a pane, seen at a slant: where they meet each has its own look.
 TEST_F(Solids, NooksShowThePartOfTheirFace) {
     Scene scene;

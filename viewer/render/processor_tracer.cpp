@@ -132,10 +132,8 @@ private:
         for (size_t k = 0; k < of.size(); ++k) {
             const float guess = rays[of[k]].guess;
             if (!cells.surfaceAt(cells.side * slopes[k].value, pixelAngle() * guess)) continue;
-            const Vec3f normal = normalOf(slopes[k], cells);
-            if (dot(normal, directions[of[k]]) > 0) continue;  // of a face behind an edge
             found[of[k]] = guess;
-            normals[of[k]] = normal;
+            normals[of[k]] = normalOf(slopes[k], cells);
         }
         return found;
     }
@@ -175,7 +173,6 @@ private:
         std::vector<BatchedEvaluator::Slope> slopes = evaluator.slopesOf(questions, cost);
         cost.light += questions.size();
         askInFrontAgain(hits, of, questions, slopes, evaluator, cost);
-        askNearerAgain(hits, of, questions, slopes, evaluator, cost);
         for (size_t j = 0; j < of.size(); ++j) {
             BatchedEvaluator::Slope mean{0, {0, 0, 0}};
             float bend = 0;
@@ -219,29 +216,6 @@ private:
         const std::vector<BatchedEvaluator::Slope>& lifted = evaluator.slopesOf(again, cost);
         cost.light += again.size();
         for (size_t i = 0; i < which.size(); ++i) slopes[which[i]] = lifted[i];
-    }
-
-    /// A ray that passes an edge within its pixel ends at the face behind it, which nobody sees. Places whose normal
-    /// looks away from the eye are asked again nearer to it, where the face before the edge is.
-    void askNearerAgain(std::span<const Hit> hits, std::span<const size_t> of, const std::vector<Question>& questions,
-                        std::span<BatchedEvaluator::Slope> slopes, BatchedEvaluator& evaluator, TraceCost& cost) const {
-        const CellSpace cells = space();
-        const size_t each = of.empty() ? 0 : questions.size() / of.size();
-        std::vector<Question> again;
-        std::vector<size_t> which;
-        for (size_t k = 0; k < questions.size(); ++k) {
-            const Hit& hit = hits[of[k / each]];
-            const Vec3f back = normalized(view_.eye.as<float>() - hit.position);
-            if (dot(normalOf(slopes[k], cells), back) >= 0) continue;
-            const Vec3f place = questions[k].place + back * (1.5f * pixelAt(hit));
-            const Cell cell = cells.cellAt(place);
-            if (cell.state != CellState::Near) continue;
-            again.push_back({place, cell.tape});
-            which.push_back(k);
-        }
-        const std::vector<BatchedEvaluator::Slope>& nearer = evaluator.slopesOf(again, cost);
-        cost.light += again.size();
-        for (size_t i = 0; i < which.size(); ++i) slopes[which[i]].gradient = nearer[i].gradient;
     }
 
     /// Share of the sky that each hit sees, from the field at growing distances along the normal.

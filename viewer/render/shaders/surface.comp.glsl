@@ -216,14 +216,7 @@ void main() {
     float pixel = pixelAngle * length(eye - hit.xyz);
     if (what < 2) {
         vec3 normal = vec3(0.0, 1.0, 0.0);
-        if (hit.w == hitObject) {
-            vec3 back = normalize(eye - hit.xyz);
-            float h = max(2e-5 * sceneSize, (what == 0 ? 0.02 : 0.1) * pixel);
-            normal = normalAt(hit.xyz + back * (0.05 * pixel), h);
-            // A ray that passes an edge within its pixel ends at the face behind it: the one before it is seen.
-            vec3 nearer = hit.xyz + back * (1.5 * pixel);
-            if (dot(normal, back) < 0.0 && cellAt(nearer).state == cellNear) normal = normalAt(nearer, h);
-        }
+        if (hit.w == hitObject) normal = normalAt(hit.xyz + normalize(eye - hit.xyz) * (0.05 * pixel), max(2e-5 * sceneSize, (what == 0 ? 0.02 : 0.1) * pixel));
         lits[2u * i] = vec4(normal, 0.0);
     } else {
         vec3 normal = lits[2u * i].xyz;
