@@ -56,12 +56,12 @@ Status checkSection(const BuildRequest& request) {
 Status checkEdits(const BuildRequest& request) {
     const auto files = allFiles(request.out);
     if (!request.report.empty() || request.validate || surveys(request) || files.empty()) return Done{};
-    const auto isMade = [&](auto is) {
+    const auto holds = [&](auto is) {
         return std::any_of(files.begin(), files.end(),
                            [&](const auto& file) { return is(*exporter::exporterFor(file)); });
     };
-    const bool meshes = isMade([](const exporter::Exporter& row) { return row.wantsMesh(); });
-    const bool volumes = isMade([](const exporter::Exporter& row) { return row.wantsVolume; });
+    const bool meshes = holds([](const exporter::Exporter& row) { return row.wantsMesh(); });
+    const bool volumes = holds([](const exporter::Exporter& row) { return row.wantsVolume; });
     const std::pair<bool, const char*> edits[] = {
         {request.edits.smooth > 0 && !meshes, "--smooth"},
         {request.edits.simplify < 1 && !meshes, "--simplify"},
