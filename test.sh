@@ -4,4 +4,5 @@
 cd "$(dirname "$0")"
 . cmake/setup.sh
 build all
+[ "$PRESET" != tsan ] || export TSAN_OPTIONS="suppressions=$PWD/tests/tsan.supp die_after_fork=0"
 exec ctest --test-dir "build/$PRESET" --output-on-failure -j 2 "$@"

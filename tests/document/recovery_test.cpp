@@ -41,6 +41,7 @@ TEST(Recoveries, SurviveAKill) {
         if (write(ready[1], &good, 1) != 1) _exit(1);
         for (;;) pause();
     }
+    close(ready[1]);  // so that reading ends with the child
     char good = 0;
     ASSERT_EQ(read(ready[0], &good, 1), 1);
     EXPECT_EQ(good, 'y');
