@@ -36,7 +36,8 @@ Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, Mes
     keepOnly(request.edits.keep, meshed, request.grid.threads, request.quiet);
     const float cell_m = meshed.grid.cell_m;
     const auto before = static_cast<double>(meshed.mesh.triangleCount());
-    auto mesh = pipeline::edited(std::move(meshed.mesh), request.edits, request.grid.surface, cell_m, context);
+    auto mesh =
+        pipeline::edited(std::move(meshed.mesh), request.edits, {model.tape, request.grid.surface, cell_m}, context);
     if (!mesh.ok()) return mesh;
     if (mesh->triangleCount() == 0 && scene.empty() && !allFiles(request.out).empty()) {
         Error error = pipeline::noSurface(model, cell_m);

@@ -136,7 +136,8 @@ Result<DrawnMesh> meshAsBuilt(const RenderRequest& request, const Model& model, 
     if (!request.print.quiet)
         if (const Status s = warnOfMesh(model, *meshed, context); !s.ok()) return s.error();
     keepOnly(request.edits.keep, *meshed, request.grid.threads, request.print.quiet);
-    auto mesh = edited(std::move(meshed->mesh), request.edits, request.grid.surface, meshed->grid.cell_m, context);
+    auto mesh = edited(std::move(meshed->mesh), request.edits, {model.tape, request.grid.surface, meshed->grid.cell_m},
+                       context);
     if (!mesh.ok()) return mesh.error();
     const auto scene = makeScene(model, request.model, request.grid, request.edits, request.print.quiet, context);
     if (!scene.ok()) return scene.error();

@@ -3,6 +3,7 @@
 #include "modeler/core/packages.h"
 #include "modeler/mesh/edit.h"
 #include "modeler/mesh/simplify.h"
+#include "modeler/mesh/tips.h"
 
 namespace sgm::pipeline {
 
@@ -12,14 +13,16 @@ double toleranceOf(const MeshEdits& edits, mesh::Surface surface, float cell_m) 
     return simplifies ? mesh::usualTolerance(cell_m) : 0;
 }
 
-Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, mesh::Surface surface, float cell_m,
-                          Context& context) {
+Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, const MeshSource& source, Context& context) {
+    const mesh::Surface surface = source.surface;
+    if (surface == mesh::Surface::Crisp)
+        context.timed("tips", [&] { return mesh::completeTips(mesh, source.field, source.cell_m, context.threads); });
     if (edits.smooth > 0) {
         auto result = context.timed("smooth", [&] { return mesh::smooth(mesh, edits.smooth, context.progress); });
         if (!result.ok()) return result;
         mesh = std::move(*result);
     }
-    const double tolerance_m = toleranceOf(edits, surface, cell_m);
+    const double tolerance_m = toleranceOf(edits, surface, source.cell_m);
     if ((edits.simplify < 1 || tolerance_m > 0) && mesh.triangleCount() > 0) {
         auto result = context.timed("simplify", [&] {
             return edits.simplify < 1

@@ -6,6 +6,7 @@
 
 #include "grammar/pipeline/context.h"
 #include "modeler/core/result.h"
+#include "modeler/eval/tape.h"
 #include "modeler/mesh/connected_components.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/mesh/simplify.h"
@@ -26,8 +27,15 @@ struct MeshEdits {
 /// otherwise or smooth it; 0 keeps all triangles. Nothing unless the edits say so in a build without CGAL.
 double toleranceOf(const MeshEdits& edits, mesh::Surface surface, float cell_m);
 
-/// Smooths and simplifies, stages "smooth" and "simplify"; components were dropped before (mesh::keepOnly).
-Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, mesh::Surface surface, float cell_m,
-                          Context& context);
+/// What a mesh was made of.
+struct MeshSource {
+    const eval::Tape& field;
+    mesh::Surface surface;
+    float cell_m;
+};
+
+/// Completes the tips of a crisp mesh, smooths and simplifies: stages "tips", "smooth" and "simplify"; components were
+/// dropped before (mesh::keepOnly).
+Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, const MeshSource& source, Context& context);
 
 }  // namespace sgm::pipeline

@@ -172,7 +172,7 @@ Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest&
         lacks = missingWarnings(*model, grid, *missing, name);
     }
     mesh::keepOnly(meshed->mesh, request.edits.keep, cell_m, context.threads);
-    auto mesh = edited(std::move(meshed->mesh), request.edits, request.meshing.surface, cell_m, context);
+    auto mesh = edited(std::move(meshed->mesh), request.edits, {model->tape, request.meshing.surface, cell_m}, context);
     if (!mesh.ok()) return mesh.error();
     if (mesh->triangleCount() == 0) return noSurface(*model, cell_m);
     return ObjectMesh{std::move(*mesh), model->lowered->provenance, std::move(lacks)};

@@ -1,6 +1,7 @@
-// What simplify.cpp and validate_exactly.cpp say in a build without CGAL.
+// What simplify.cpp, tips.cpp and validate_exactly.cpp do in a build without CGAL.
 #include "modeler/core/packages.h"
 #include "modeler/mesh/simplify.h"
+#include "modeler/mesh/tips.h"
 #include "modeler/mesh/validate.h"
 
 namespace sgm::mesh {
@@ -10,6 +11,8 @@ Result<MeshValidation> validate(const Mesh&) { return missingPackage(Package::Cg
 Result<Mesh> simplify(const Mesh&, const SimplifyOptions&, Progress*) {
     return missingPackage(Package::Cgal, "simplification");
 }
+
+size_t completeTips(Mesh&, const eval::Tape&, float, int) { return 0; }
 
 Result<Mesh> simplifyToShare(const Mesh&, double, int, Progress*) {
     return missingPackage(Package::Cgal, "simplification");

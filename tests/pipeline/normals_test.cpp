@@ -62,7 +62,7 @@ TEST(Normals, NoCornerOfAFileLooksThroughItsTriangle) {
     const mesh::Grid grid = gridOf(*model, 100);
     auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
     ASSERT_TRUE(meshed.ok());
-    const auto mesh = edited(std::move(meshed->mesh), {}, mesh::Surface::Crisp, grid.cell_m, context);
+    const auto mesh = edited(std::move(meshed->mesh), {}, {model->tape, mesh::Surface::Crisp, grid.cell_m}, context);
     ASSERT_TRUE(mesh.ok());
     const std::vector<mesh::Triangle> triangles = mesh::gatherTriangles(*mesh);
     const mesh::CornerNormalTable corners = mesh::collectCornerNormals(*mesh);

@@ -23,7 +23,7 @@ TEST(Rims, OfPrismsHaveNoChamfers) {
     const mesh::Grid grid = gridOf(*model, 512);
     auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
     ASSERT_TRUE(meshed.ok());
-    const auto mesh = edited(std::move(meshed->mesh), {}, mesh::Surface::Crisp, grid.cell_m, context);
+    const auto mesh = edited(std::move(meshed->mesh), {}, {model->tape, mesh::Surface::Crisp, grid.cell_m}, context);
     ASSERT_TRUE(mesh.ok());
     const double apothem_m = 20 * std::cos(pi / 64);
     for (const mesh::Chunk& chunk : mesh->chunks)

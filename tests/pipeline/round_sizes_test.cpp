@@ -24,7 +24,8 @@ size_t trianglesOf(const std::string& body, double cell_m) {
     const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
     const mesh::Grid grid = gridOver(*model, {.cell_m = cell_m}, mesh::Surface::Crisp);
     auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
-    return edited(std::move(meshed->mesh), {}, mesh::Surface::Crisp, grid.cell_m, context)->triangleCount();
+    return edited(std::move(meshed->mesh), {}, {model->tape, mesh::Surface::Crisp, grid.cell_m}, context)
+        ->triangleCount();
 }
 
 TEST(RoundSizes, CostNoTriangles) {

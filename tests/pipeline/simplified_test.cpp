@@ -19,7 +19,7 @@ Result<mesh::Mesh> written(const char* text, uint64_t seed, int cells) {
     if (!model.ok()) return model.error();
     auto meshed = makeMesh(*model, gridOf(*model, cells), {.surface = mesh::Surface::Crisp}, context);
     if (!meshed.ok()) return meshed.error();
-    return edited(std::move(meshed->mesh), {}, mesh::Surface::Crisp, meshed->grid.cell_m, context);
+    return edited(std::move(meshed->mesh), {}, {model->tape, mesh::Surface::Crisp, meshed->grid.cell_m}, context);
 }
 
 TEST(Simplified, RoughBedsCrossNothing) {

@@ -65,7 +65,7 @@ Status write(const BuiltModel& shown, const ExportRequest& request, const export
         context);
     if (!made.ok()) return made.error();
     if (meshed->mesh.triangleCount() == 0 && made->scene.empty()) return pipeline::noSurface(*model, cell_m);
-    auto mesh = pipeline::edited(std::move(meshed->mesh), edits, meshing.surface, cell_m, context);
+    auto mesh = pipeline::edited(std::move(meshed->mesh), edits, {model->tape, meshing.surface, cell_m}, context);
     if (!mesh.ok()) return mesh.error();
     pipeline::ProductRequest wanted;
     wanted.division = std::move(*division);

@@ -1,0 +1,273 @@
+#include "modeler/mesh/tip_fan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "modeler/mesh/exact_meeting.h"
+
+namespace sgm::mesh {
+namespace {
+
+constexpr double leastDeterminant = 1e-4;  ///< of the mean of n nᵀ: below it, tangent planes meet in a line
+/// Of the depth of the highest vertex below the apex: where the surface is cut off, as far as needed.
+constexpr double cuts[] = {1.5, 2, 3, 4, farthestCut};
+constexpr int rounds = 6;  ///< to find the apex
+// In cells:
+constexpr double exactly = 1e-3;      ///< what rounding leaves of the apex from planes around it
+constexpr double leastDepth = 0.05;   ///< of the highest vertex below the apex
+constexpr double onSurface = 0.03;    ///< the field at the apex, and the apex from the planes around it
+constexpr double nearSurface = 0.25;  ///< the field on the triangles of the fan
+
+constexpr size_t mostCutOff = 3000;  ///< triangles around vertices
+
+std::array<Vec3f, 3> placesOf(const TipSurface& surface, const TipFan& fan, const TipTriangle& t) {
+    std::array<Vec3f, 3> places;
+    for (int k = 0; k < 3; ++k)
+        places[static_cast<size_t>(k)] = t.corners[k] == fan.top ? fan.apex : surface.positions[t.corners[k]];
+    return places;
+}
+
+class FanBuilder {
+public:
+    FanBuilder(const TipSurface& surface, uint32_t vertex, Vec3d apex)
+        : surface_(surface), vertex_(vertex), guess_(apex) {}
+
+    /// What is cut off at so many times the depth of the highest vertex; see `fanAt`.
+    std::optional<TipFan> fan(double cut) {
+        top_ = vertex_, apex_ = guess_;
+        axis_ = normalized(apex_ - at(top_));
+        double within_m = apexSlack * surface_.cell_m;
+        for (int round = 0; round < rounds; ++round) {
+            if (isTooNear()) return {};
+            if (!gather(cut * depthOf(top_)) || isTooNear()) return {};
+            const auto meeting = meetingOf(within_m);
+            if (!meeting || meeting->error > within_m) return {};
+            agrees_ = true;
+            apex_ = meeting->point;
+            axis_ = normalized(apex_ - middle());
+            within_m = std::clamp(meeting->error, exactly * surface_.cell_m, onSurface * surface_.cell_m);
+        }
+        if (!isApex()) return {};
+        TipFan made{top_, apex_.as<float>(), {}, {}};
+        if (!fillFrom(made) || !isOneLoop(made) || !liesOnSurface(made) || crosses(surface_, made, beside(made)))
+            return {};
+        return made;
+    }
+
+    /// Whether the planes agreed on an apex once, so that another cut may find it.
+    bool agrees() const { return agrees_; }
+
+private:
+    Vec3d at(uint32_t vertex) const { return surface_.positions[vertex].as<double>(); }
+    double depthOf(uint32_t vertex) const { return dot(apex_ - at(vertex), axis_); }
+
+    bool isTooNear() const { return !(depthOf(top_) > leastDepth * surface_.cell_m); }
+
+    std::span<const uint32_t> around(uint32_t vertex) const {
+        const uint32_t first = surface_.firstAround[vertex];
+        return surface_.around.subspan(first, surface_.firstAround[vertex + 1] - first);
+    }
+
+    /// The vertices that can be reached from the top above some depth, and their triangles; the highest becomes the
+    /// top. False where there are too many.
+    bool gather(double end) {
+        cutOff_ = {top_};
+        triangles_.clear();
+        std::vector<uint32_t> pending{top_};
+        while (!pending.empty()) {
+            const uint32_t v = pending.back();
+            pending.pop_back();
+            if (depthOf(v) < depthOf(top_)) top_ = v;
+            for (const uint32_t t : around(v)) {
+                triangles_.push_back(t);
+                for (int k = 0; k < 3; ++k) {
+                    const uint32_t other = surface_.triangles[t].corners[k];
+                    if (depthOf(other) < end && cutOff_.insert(other).second) pending.push_back(other);
+                }
+            }
+            if (triangles_.size() > mostCutOff) return false;
+        }
+        std::sort(triangles_.begin(), triangles_.end());
+        triangles_.erase(std::unique(triangles_.begin(), triangles_.end()), triangles_.end());
+        return true;
+    }
+
+    int countOf(const TipTriangle& t) const {
+        int inside = 0;
+        for (int k = 0; k < 3; ++k) inside += cutOff_.contains(t.corners[k]);
+        return inside;
+    }
+
+    /// Calls `visit(vertex, normal)` for all corners that are cut off.
+    template <class Visit>
+    void visitCorners(Visit&& visit) const {
+        for (const uint32_t number : triangles_) {
+            const TipTriangle& t = surface_.triangles[number];
+            for (int k = 0; k < 3; ++k)
+                if (cutOff_.contains(t.corners[k])) visit(t.corners[k], t.normals[static_cast<size_t>(k)]);
+        }
+    }
+
+    Vec3d middle() const {
+        Vec3d sum{};
+        double count = 0;
+        visitCorners([&](uint32_t v, Vec3f) { sum += at(v), ++count; });
+        return sum * (1 / count);
+    }
+
+    /// Where the planes of what is cut off meet; those farther than twice `within_m` from the apex don't count, half of
+    /// them at most.
+    std::optional<TangentPlanes::Intersection> meetingOf(double within_m) const {
+        TangentPlanes planes;
+        size_t used = 0, all = 0;
+        visitCorners([&](uint32_t v, Vec3f normal) {
+            if (v == top_ || surface_.isConfined[v]) return;
+            ++all;
+            const Vec3d n = normal.as<double>(), point = at(v) - apex_;
+            if (std::abs(dot(n, point)) > 2 * within_m) return;
+            planes.add(n, point);
+            ++used;
+        });
+        if (2 * used < all) return {};
+        auto meeting = planes.meeting();
+        if (meeting) meeting->point += apex_;
+        return meeting;
+    }
+
+    /// Whether the surface goes through the apex, with solid on one side.
+    bool isApex() const {
+        const Vec3d step = axis_ * (apexSlack * surface_.cell_m);
+        const std::array points{apex_.as<float>(), (apex_ + step).as<float>(), (apex_ - step).as<float>()};
+        const std::vector<float> values = valuesAt(surface_, points);
+        return std::abs(values[0]) < onSurface * surface_.cell_m && values[1] * values[2] < 0;
+    }
+
+    /// The triangles that go and those of the fan; false where one of these has a confined vertex.
+    bool fillFrom(TipFan& made) const {
+        made.removed = triangles_;
+        for (const uint32_t number : triangles_) {
+            const TipTriangle& t = surface_.triangles[number];
+            if (countOf(t) != 1) continue;
+            size_t k = 0;
+            while (!cutOff_.contains(t.corners[static_cast<int>(k)])) ++k;
+            const size_t b = (k + 1) % 3, c = (k + 2) % 3;
+            for (const size_t corner : {b, c})
+                if (surface_.isConfined[t.corners[static_cast<int>(corner)]]) return false;
+            TipTriangle fan = t;
+            fan.corners[static_cast<int>(k)] = made.top;
+            fan.normals[k] = normalized(t.normals[b] + t.normals[c]);
+            fan.ownNormals = static_cast<uint8_t>(t.ownNormals | 1u << k);
+            made.triangles.push_back(fan);
+        }
+        return made.triangles.size() >= 3;
+    }
+
+    /// Whether the sides of the fan opposite to the apex are one loop that goes through no vertex twice.
+    static bool isOneLoop(const TipFan& made) {
+        std::unordered_map<uint32_t, uint32_t> next;
+        for (const TipTriangle& t : made.triangles) {
+            int k = 0;
+            while (t.corners[k] != made.top) ++k;
+            if (!next.emplace(t.corners[(k + 1) % 3], t.corners[(k + 2) % 3]).second) return false;
+        }
+        uint32_t v = next.begin()->first;
+        for (size_t i = 0; i < next.size(); ++i) {
+            const auto to = next.find(v);
+            if (to == next.end()) return false;
+            v = to->second;
+            if (v == next.begin()->first) return i + 1 == next.size();
+        }
+        return false;
+    }
+
+    /// The triangles around the border of a fan, ascending.
+    std::vector<uint32_t> beside(const TipFan& made) const {
+        std::vector<uint32_t> found;
+        for (const TipTriangle& t : made.triangles)
+            for (int k = 0; k < 3; ++k)
+                if (t.corners[k] != made.top)
+                    for (const uint32_t other : around(t.corners[k])) found.push_back(other);
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        return found;
+    }
+
+    bool liesOnSurface(const TipFan& made) const {
+        std::vector<Vec3f> points;
+        for (const TipTriangle& t : made.triangles) {
+            const std::array<Vec3f, 3> p = placesOf(surface_, made, t);
+            points.push_back((p[0] + p[1] + p[2]) * (1.0f / 3));
+            for (size_t k = 0; k < 3; ++k) points.push_back((p[k] + p[(k + 1) % 3]) * 0.5f);
+        }
+        const std::vector<float> values = valuesAt(surface_, points);
+        return std::all_of(values.begin(), values.end(),
+                           [&](float f) { return std::abs(f) < nearSurface * surface_.cell_m; });
+    }
+
+    const TipSurface& surface_;
+    const uint32_t vertex_;
+    const Vec3d guess_;
+    bool agrees_ = false;
+    uint32_t top_ = 0;
+    Vec3d apex_, axis_;
+    std::unordered_set<uint32_t> cutOff_;  ///< vertices
+    std::vector<uint32_t> triangles_;      ///< with such vertices, ascending
+};
+
+}  // namespace
+
+std::optional<TangentPlanes::Intersection> TangentPlanes::meeting() const {
+    const auto n = static_cast<double>(count_);
+    const double determinant = dot(rows_[0], cross(rows_[1], rows_[2]));
+    if (!(determinant > leastDeterminant * n * n * n)) return {};
+    const Vec3d p = (cross(rows_[1], rows_[2]) * right_.x + cross(rows_[2], rows_[0]) * right_.y +
+                     cross(rows_[0], rows_[1]) * right_.z) *
+                    (1 / determinant);
+    return Intersection{p, std::sqrt(std::max(0.0, (squares_ - dot(right_, p)) / n))};
+}
+
+std::vector<float> valuesAt(const TipSurface& surface, std::span<const Vec3f> points) {
+    std::vector<float> x, y, z, values(points.size());
+    for (const Vec3f& p : points) x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
+    eval::evaluate(surface.field, {x.data(), y.data(), z.data(), points.size()}, values.data(), surface.workspace);
+    return values;
+}
+
+std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d apex) {
+    FanBuilder builder(surface, vertex, apex);
+    for (const double cut : cuts)
+        if (auto fan = builder.fan(cut); fan || !builder.agrees()) return fan;
+    return {};
+}
+
+bool crosses(const TipSurface& surface, const TipFan& fan, std::span<const uint32_t> near) {
+    std::vector<Vec3f> positions;
+    std::unordered_map<uint32_t, uint32_t> numbers;
+    std::vector<Triangle> triangles;
+    const auto add = [&](const TipTriangle& t) {
+        const std::array<Vec3f, 3> places = placesOf(surface, fan, t);
+        Triangle own;
+        for (int k = 0; k < 3; ++k) {
+            const auto [known, isNew] = numbers.emplace(t.corners[k], static_cast<uint32_t>(positions.size()));
+            if (isNew) positions.push_back(places[static_cast<size_t>(k)]);
+            own[k] = known->second;
+        }
+        triangles.push_back(own);
+    };
+    for (const TipTriangle& t : fan.triangles) add(t);
+    for (const uint32_t t : near)
+        if (!std::binary_search(fan.removed.begin(), fan.removed.end(), t)) add(surface.triangles[t]);
+    const auto boxOf = [&](const Triangle& t) {
+        return hull(hull(Box3f{positions[t.x], positions[t.x]}, positions[t.y]), positions[t.z]);
+    };
+    for (size_t i = 0; i < fan.triangles.size(); ++i)
+        for (size_t j = i + 1; j < triangles.size(); ++j)
+            if (!intersection(boxOf(triangles[i]), boxOf(triangles[j])).empty() &&
+                meetWrongly(positions, triangles[i], triangles[j]))
+                return true;
+    return false;
+}
+
+}  // namespace sgm::mesh

@@ -1,0 +1,385 @@
+#include "modeler/mesh/tips.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "modeler/core/parallel.h"
+#include "modeler/mesh/box_finder.h"
+#include "modeler/mesh/fanned_mesh.h"
+#include "modeler/mesh/tip_fan.h"
+
+namespace sgm::mesh {
+namespace {
+
+constexpr uint32_t none = 0xffffffffu;
+constexpr Label noLabel = 0xffffffffu;
+/// The mean of the normals around a tip is shorter, as of cones within 48° of their axis.
+constexpr float widestTip = 0.75f;
+constexpr size_t mostOfPart = 64;  ///< candidates: a part with more is a fractal or rough
+constexpr double nearer = 0.25;    ///< of the way from a vertex to its apex: no other vertex is as near to that
+// In cells:
+constexpr double nearestApex = 0.05, farthestApex = 16;  ///< from the vertex below it
+constexpr double coneSlack = 0.002;                      ///< an apex from the planes around it, without creases
+constexpr double around = 3;                             ///< where planes are looked for
+
+/// A vertex beyond which the planes around it meet.
+struct Candidate {
+    uint32_t vertex;
+    OriginId origin;  ///< of a triangle at the vertex
+    Vec3d apex;
+};
+
+/// A vertex around which normals differ a lot.
+struct WideVertex {
+    uint32_t vertex;
+    TangentPlanes planes;      ///< of vertices beside it that lie on them, relative to it
+    TangentPlanes directions;  ///< of all, as if through it
+    OriginId origin;           ///< of one of its triangles, as `label`
+    Label label;
+    bool hasCreases = false;  ///< its triangles have several labels
+};
+
+class Tips {
+public:
+    Tips(const Mesh& mesh, const eval::Tape& field, double cell_m, int threads)
+        : mesh_(mesh), threads_(threads), surface_{{}, isConfined_, {}, {}, {}, field, workspace_, cell_m} {
+        size_t vertices = 0;
+        uint32_t triangles = 0;
+        for (const Chunk& c : mesh_.chunks) {
+            firstTriangle_.push_back(triangles);
+            vertices += c.positions.size(), triangles += static_cast<uint32_t>(c.triangles.size());
+        }
+        positions_.resize(vertices), normals_.resize(vertices), isConfined_.resize(vertices);
+        inChunks([&](size_t c) {
+            const Chunk& chunk = mesh_.chunks[c];
+            std::copy(chunk.positions.begin(), chunk.positions.end(), positions_.begin() + chunk.firstVertex);
+            std::copy(chunk.normals.begin(), chunk.normals.end(), normals_.begin() + chunk.firstVertex);
+        });
+        for (const Chunk& c : mesh_.chunks)
+            for (const ConfinedVertex& v : c.confined) isConfined_[c.firstVertex + v.vertex] = true;
+        surface_.positions = positions_;
+    }
+
+    std::vector<TipFan> find() {
+        findCandidates();
+        if (candidates_.empty()) return {};
+        listTriangles();
+        std::vector<TipFan> fans;
+        std::vector<bool> isTaken(positions_.size());
+        for (const Candidate& at : candidates_) {
+            if (isTaken[at.vertex]) continue;
+            auto fan = fanAt(surface_, at.vertex, at.apex);
+            if (!fan) continue;
+            const std::vector<uint32_t> vertices = verticesOf(*fan);
+            if (std::any_of(vertices.begin(), vertices.end(), [&](uint32_t v) { return isTaken[v]; })) continue;
+            for (const uint32_t v : vertices) isTaken[v] = true;
+            fans.push_back(std::move(*fan));
+        }
+        dropCrossing(fans);
+        for (TipFan& fan : fans)
+            for (uint32_t& t : fan.removed) t = triangles_[t].number;
+        return fans;
+    }
+
+private:
+    /// Calls `work` with the number of every chunk.
+    template <class Work>
+    void inChunks(Work&& work) const {
+        parallelFor(mesh_.chunks.size(), threads_, nullptr, [&](size_t c, int) { work(c); });
+    }
+
+    /// Calls `visit` with every triangle of a chunk of which wants(corners in the mesh) says so.
+    template <class Wants, class Visit>
+    void visitTriangles(size_t c, Wants&& wants, Visit&& visit) const {
+        const Chunk& chunk = mesh_.chunks[c];
+        auto own = chunk.cornerNormals.begin();
+        for (uint32_t t = 0; t < chunk.triangles.size(); ++t) {
+            const auto first = own;
+            while (own != chunk.cornerNormals.end() && own->corner / 3 == t) ++own;
+            const Triangle corners = chunk.inMesh(chunk.triangles[t]);
+            if (!wants(corners)) continue;
+            TipTriangle at{corners,
+                           {normals_[corners.x], normals_[corners.y], normals_[corners.z]},
+                           firstTriangle_[c] + t,
+                           chunk.origins[t],
+                           chunk.labels.empty() ? 0 : chunk.labels[t],
+                           0};
+            for (auto n = first; n != own; ++n) {
+                at.normals[n->corner % 3] = n->normal;
+                at.ownNormals |= static_cast<uint8_t>(1u << n->corner % 3);
+            }
+            visit(at);
+        }
+    }
+
+    /// The triangles of which wants(corners in the mesh) says so, in their order.
+    template <class Wants>
+    std::vector<TipTriangle> trianglesThat(Wants&& wants) const {
+        std::vector<std::vector<TipTriangle>> found(mesh_.chunks.size());
+        inChunks([&](size_t c) { visitTriangles(c, wants, [&](const TipTriangle& t) { found[c].push_back(t); }); });
+        std::vector<TipTriangle> all;
+        for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
+        return all;
+    }
+    std::vector<TipTriangle> trianglesIn(const BoxFinder& finder) const {
+        return trianglesThat([&](const Triangle& corners) {
+            std::vector<uint32_t> found;
+            finder.find(boxOf(corners), found);
+            return !found.empty();
+        });
+    }
+
+    /// Of all normals at the triangles around a vertex.
+    struct Sum {
+        Vec3f normals;
+        float count = 0;
+        bool isWide() const {
+            const float most = widestTip * count;
+            return dot(normals, normals) < most * most;
+        }
+    };
+
+    PageVector<Sum> sumsOfNormals() const {
+        PageVector<Sum> sums;
+        sums.resize(positions_.size());
+        std::vector<std::vector<Sum>> borrowed(mesh_.chunks.size());
+        inChunks([&](size_t c) {
+            const Chunk& chunk = mesh_.chunks[c];
+            Sum* const own = sums.data() + chunk.firstVertex;
+            std::fill(own, own + chunk.positions.size(), Sum{});
+            borrowed[c].resize(chunk.ghosts.vertices.size());
+            auto normal = chunk.cornerNormals.begin();
+            for (uint32_t t = 0; t < chunk.triangles.size(); ++t) {
+                const Triangle corners = chunk.triangles[t], inMesh = chunk.inMesh(corners);
+                std::array<Vec3f, 3> n{normals_[inMesh.x], normals_[inMesh.y], normals_[inMesh.z]};
+                for (; normal != chunk.cornerNormals.end() && normal->corner / 3 == t; ++normal)
+                    n[normal->corner % 3] = normal->normal;
+                const Vec3f all = n[0] + n[1] + n[2];
+                for (int k = 0; k < 3; ++k) {
+                    Sum& sum = corners[k] & ghostBit ? borrowed[c][corners[k] & ~ghostBit] : own[corners[k]];
+                    sum.normals += all, sum.count += 3;
+                }
+            }
+        });
+        for (size_t c = 0; c < borrowed.size(); ++c)
+            for (size_t i = 0; i < borrowed[c].size(); ++i) {
+                Sum& sum = sums[mesh_.chunks[c].ghosts.vertices[i]];
+                sum.normals += borrowed[c][i].normals, sum.count += borrowed[c][i].count;
+            }
+        return sums;
+    }
+
+    std::vector<WideVertex> findWideVertices() const {
+        const PageVector<Sum> sums = sumsOfNormals();
+        std::vector<WideVertex> wide;
+        std::vector<uint32_t> place(positions_.size(), none);
+        for (uint32_t v = 0; v < sums.size(); ++v) {
+            if (!sums[v].isWide()) continue;
+            place[v] = static_cast<uint32_t>(wide.size());
+            wide.push_back({v, {}, {}, 0, noLabel});
+        }
+        if (wide.empty()) return wide;
+        const auto isWide = [&](const Triangle& t) {
+            return place[t.x] != none || place[t.y] != none || place[t.z] != none;
+        };
+        for (const TipTriangle& t : trianglesThat(isWide))
+            for (int k = 0; k < 3; ++k) {
+                if (place[t.corners[k]] == none) continue;
+                WideVertex& at = wide[place[t.corners[k]]];
+                at.hasCreases |= at.label != noLabel && at.label != t.label;
+                at.label = t.label, at.origin = t.origin;
+                for (size_t i = 0; i < 3; ++i) {
+                    at.directions.add(t.normals[i].as<double>(), {});
+                    if (static_cast<int>(i) != k) addPlane(t, i, at);
+                }
+            }
+        return wide;
+    }
+
+    /// Adds the tangent plane at a corner, unless its vertex is confined.
+    void addPlane(const TipTriangle& t, size_t corner, WideVertex& at) const {
+        const uint32_t v = t.corners[static_cast<int>(corner)];
+        if (!isConfined_[v])
+            at.planes.add(t.normals[corner].as<double>(), (positions_[v] - positions_[at.vertex]).as<double>());
+    }
+
+    /// Adds the planes within a few cells to those of vertices beside which too few lie on theirs.
+    void addPlanesAround(std::span<WideVertex> vertices) const {
+        if (vertices.empty()) return;
+        std::vector<Box3f> boxes;
+        for (const WideVertex& at : vertices)
+            boxes.push_back(cubeAround(positions_[at.vertex], around * surface_.cell_m));
+        const BoxFinder finder(boxes);
+        std::vector<uint32_t> found;
+        for (const TipTriangle& t : trianglesIn(finder)) {
+            finder.find(boxOf(t.corners), found);
+            for (const uint32_t i : found)
+                for (size_t k = 0; k < 3; ++k) addPlane(t, k, vertices[i]);
+        }
+    }
+
+    /// Vertices beyond which the tangent planes around them meet on the surface.
+    void findCandidates() {
+        std::vector<WideVertex> wide = findWideVertices(), creased;
+        for (const WideVertex& at : wide)
+            if (!at.planes.meeting() && at.directions.meeting()) creased.push_back(at);
+        for (const Candidate& c : candidatesOf(wide)) {
+            const auto at = std::lower_bound(wide.begin(), wide.end(), c.vertex,
+                                             [](const WideVertex& w, uint32_t vertex) { return w.vertex < vertex; });
+            if (at->hasCreases)
+                creased.push_back(*at);
+            else
+                candidates_.push_back(c);
+        }
+        addPlanesAround(creased);
+        const std::vector<Candidate> more = candidatesOf(creased);
+        candidates_.insert(candidates_.end(), more.begin(), more.end());
+        const std::vector<bool> isReached = reachedApexes();
+        keep(candidates_, [&](size_t i) { return !isReached[i]; });
+        keepNearest();
+    }
+
+    /// Of the candidates with one apex, the two nearest to it.
+    void keepNearest() {
+        std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate& a, const Candidate& b) {
+            return std::pair(wayOf(a), a.vertex) < std::pair(wayOf(b), b.vertex);
+        });
+        size_t kept = 0;
+        for (const Candidate& c : candidates_) {
+            const auto end = candidates_.begin() + static_cast<ptrdiff_t>(kept);
+            const auto hasItsApex = [&](const Candidate& k) {
+                return length(k.apex - c.apex) < apexSlack * surface_.cell_m;
+            };
+            if (std::count_if(candidates_.begin(), end, hasItsApex) < 2) candidates_[kept++] = c;
+        }
+        candidates_.resize(kept);
+    }
+
+    /// Those of some vertices.
+    std::vector<Candidate> candidatesOf(std::span<const WideVertex> vertices) {
+        std::vector<Candidate> found;
+        std::vector<Vec3f> apexes;
+        std::unordered_map<OriginId, size_t> counts;
+        for (const WideVertex& at : vertices) {
+            const auto meeting = at.planes.meeting();
+            const double slack = at.hasCreases ? apexSlack : coneSlack;
+            if (!meeting || meeting->error > slack * surface_.cell_m) continue;
+            const double way = length(meeting->point);
+            // Corners of creases within a cell are where they should be.
+            const double nearest = at.hasCreases ? 1 : nearestApex;
+            if (!(way > nearest * surface_.cell_m && way < farthestApex * surface_.cell_m)) continue;
+            found.push_back({at.vertex, at.origin, positions_[at.vertex].as<double>() + meeting->point});
+            apexes.push_back(found.back().apex.as<float>());
+            ++counts[at.origin];
+        }
+        const std::vector<float> values = valuesAt(surface_, apexes);
+        keep(found, [&](size_t i) {
+            return counts[found[i].origin] <= mostOfPart && std::abs(values[i]) < apexSlack * surface_.cell_m;
+        });
+        return found;
+    }
+
+    template <class Keep>
+    static void keep(std::vector<Candidate>& candidates, Keep&& stays) {
+        size_t kept = 0;
+        for (size_t i = 0; i < candidates.size(); ++i)
+            if (stays(i)) candidates[kept++] = candidates[i];
+        candidates.resize(kept);
+    }
+
+    double wayOf(const Candidate& c) const { return length(c.apex - positions_[c.vertex].as<double>()); }
+
+    /// By candidate: whether the mesh has vertices nearer to its apex, so that nothing is missing there.
+    std::vector<bool> reachedApexes() const {
+        std::vector<bool> isReached(candidates_.size());
+        if (candidates_.empty()) return isReached;
+        std::vector<Box3f> boxes;
+        for (const Candidate& c : candidates_) boxes.push_back(cubeAround(c.apex.as<float>(), nearer * wayOf(c)));
+        const BoxFinder finder(boxes);
+        std::vector<uint32_t> found;
+        for (const Vec3f& p : positions_) {
+            finder.find({p, p}, found);
+            for (const uint32_t i : found) isReached[i] = true;
+        }
+        return isReached;
+    }
+
+    /// The triangles near candidates, and those around each vertex.
+    void listTriangles() {
+        std::vector<Box3f> boxes;
+        for (const Candidate& c : candidates_)
+            boxes.push_back(cubeAround(c.apex.as<float>(), farthestCut * wayOf(c) + 2 * surface_.cell_m));
+        triangles_ = trianglesIn(BoxFinder(boxes));
+        firstAround_.assign(positions_.size() + 1, 0);
+        for (const TipTriangle& t : triangles_)
+            for (int k = 0; k < 3; ++k) ++firstAround_[t.corners[k]];
+        uint32_t end = 0;
+        for (uint32_t& first : firstAround_) first = end += first;  // each one's end; it sinks to its first below
+        around_.resize(end);
+        for (uint32_t t = 0; t < triangles_.size(); ++t)
+            for (int k = 0; k < 3; ++k) around_[--firstAround_[triangles_[t].corners[k]]] = t;
+        surface_.triangles = triangles_, surface_.around = around_, surface_.firstAround = firstAround_;
+    }
+
+    /// All vertices of what a fan replaces.
+    std::vector<uint32_t> verticesOf(const TipFan& fan) const {
+        std::vector<uint32_t> vertices;
+        for (const uint32_t t : fan.removed) {
+            const Triangle& corners = triangles_[t].corners;
+            vertices.insert(vertices.end(), {corners.x, corners.y, corners.z});
+        }
+        return vertices;
+    }
+
+    void dropCrossing(std::vector<TipFan>& fans) const {
+        std::vector<Box3f> boxes;
+        for (const TipFan& fan : fans) {
+            Box3f box{fan.apex, fan.apex};
+            for (const TipTriangle& t : fan.triangles)
+                for (int k = 0; k < 3; ++k)
+                    if (t.corners[k] != fan.top) box = hull(box, positions_[t.corners[k]]);
+            boxes.push_back(box);
+        }
+        const BoxFinder finder(boxes);
+        std::vector<std::vector<uint32_t>> near(fans.size());
+        std::vector<uint32_t> found;
+        for (uint32_t t = 0; t < triangles_.size(); ++t) {
+            finder.find(boxOf(triangles_[t].corners), found);
+            for (const uint32_t i : found) near[i].push_back(t);
+        }
+        size_t kept = 0;
+        for (size_t i = 0; i < fans.size(); ++i)
+            if (!crosses(surface_, fans[i], near[i])) std::swap(fans[kept++], fans[i]);
+        fans.resize(kept);
+    }
+
+    static Box3f cubeAround(Vec3f middle, double reach_m) {
+        return Box3f{middle, middle}.inflated(static_cast<float>(reach_m));
+    }
+    Box3f boxOf(const Triangle& t) const {
+        return hull(hull(Box3f{positions_[t.x], positions_[t.x]}, positions_[t.y]), positions_[t.z]);
+    }
+
+    const Mesh& mesh_;
+    const int threads_;
+    eval::Workspace workspace_;
+    std::vector<uint32_t> firstTriangle_;    ///< by chunk
+    PageVector<Vec3f> positions_, normals_;  ///< by vertex of the whole mesh
+    std::vector<bool> isConfined_;           ///< by vertex
+    TipSurface surface_;
+    std::vector<Candidate> candidates_;
+    std::vector<TipTriangle> triangles_;          ///< near candidates
+    std::vector<uint32_t> around_, firstAround_;  ///< see TipSurface
+};
+
+}  // namespace
+
+size_t completeTips(Mesh& mesh, const eval::Tape& field, float cell_m, int threads) {
+    if (mesh.hasPositionsOnly()) return 0;
+    const std::vector<TipFan> fans = Tips(mesh, field, static_cast<double>(cell_m), threads).find();
+    if (!fans.empty()) mesh = withFans(mesh, fans);
+    return fans.size();
+}
+
+}  // namespace sgm::mesh

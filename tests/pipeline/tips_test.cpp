@@ -1,0 +1,87 @@
+// Tips that end thinner than a cell: cones, pyramids, steep roofs and hollows.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "grammar/pipeline/grids.h"
+#include "grammar/pipeline/load.h"
+#include "grammar/pipeline/mesh_edits.h"
+#include "grammar/pipeline/meshing.h"
+#include "modeler/mesh/validate.h"
+
+namespace sgm::pipeline {
+namespace {
+
+/// A model over a plate of 20 × 20 m, or in it, whose tip lies at `apex` moved by X and X along x and z.
+struct TipCase {
+    const char* name;
+    const char* text;
+    Vec3d apex;
+};
+
+/// How far the nearest vertex is from `apex`, metres.
+double distanceTo(const mesh::Mesh& mesh, Vec3d apex) {
+    double least = 1e9;
+    for (const mesh::Chunk& chunk : mesh.chunks)
+        for (const Vec3f p : chunk.positions) least = std::min(least, length(p.as<double>() - apex));
+    return least;
+}
+
+class Tips : public ::testing::TestWithParam<TipCase> {};
+
+TEST_P(Tips, AreWhereTheyShouldBe) {
+    const TipCase& tip = GetParam();
+    for (const double shift_m : {0.0, 0.037, 0.3})
+        for (const auto& [resolution, tolerance_m] : {std::pair(128, 0.0), std::pair(256, 1e-4)}) {
+            std::string text = "grammar 2\nterminal solid\nstart A -> " + std::string(tip.text) + "\n";
+            for (size_t at; (at = text.find('X')) != std::string::npos;)
+                text.replace(at, 1, std::to_string(shift_m) + "m");
+            syntax::Diagnostics problems;
+            const auto grammar = load("tip.sgm", text, problems);
+            ASSERT_TRUE(grammar) << text;
+            Context context{nullptr, 2};
+            const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
+            ASSERT_TRUE(model.ok()) << text;
+            const mesh::Grid grid = gridOf(*model, resolution);
+            auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
+            ASSERT_TRUE(meshed.ok());
+            const auto mesh = edited(std::move(meshed->mesh), {.tolerance_m = tolerance_m},
+                                     {model->tape, mesh::Surface::Crisp, grid.cell_m}, context);
+            ASSERT_TRUE(mesh.ok());
+            const Vec3d apex = tip.apex + Vec3d{shift_m, 0, shift_m};
+            EXPECT_LT(distanceTo(*mesh, apex), 0.02 * static_cast<double>(grid.cell_m))
+                << tip.name << " moved " << shift_m << " m, resolution " << resolution;
+            const auto validation = mesh::validate(*mesh);
+            ASSERT_TRUE(validation.ok());
+            EXPECT_TRUE(validation->closed && validation->outward && !validation->selfIntersects) << tip.name;
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, Tips,
+    ::testing::Values(
+        TipCase{"cone", "cube size (20m, .5m, 20m) + cone size (1.5m, 8m, 1.5m) move (X, .25m, X)", {0, 4.25, 0}},
+        TipCase{"blunt cone", "cube size (20m, .5m, 20m) + cone size (6m, 4m, 6m) move (X, .25m, X)", {0, 2.25, 0}},
+        TipCase{"pyramid", "cube size (20m, .5m, 20m) + pyramid size (1.5m, 8m, 1.5m) move (X, .25m, X)", {0, 4.25, 0}},
+        TipCase{"turned pyramid",
+                "cube size (20m, .5m, 20m) + pyramid size (2m, 8m, 2m) turn (0deg, 20deg, 0deg) move (X, .25m, X)",
+                {0, 4.25, 0}},
+        TipCase{"spire",
+                "cube size (20m, .5m, 20m) + size (2m, 1m, 2m) move (X, .25m, X) footprint ngon(8, 1m) hipRoof(82deg) "
+                "of solid",
+                {0, 3.5270045, 0}},
+        TipCase{"hollow",
+                "cube size (20m, 8m, 20m) - cone size (1.5m, 5m, 1.5m) turn (180deg, 0deg, 0deg) move (X, 2m, X)",
+                {0, -0.5, 0}},
+        TipCase{"hanging cone",
+                "cube size (20m, .5m, 20m) + cone size (1.5m, 8m, 1.5m) turn (180deg, 0deg, 0deg) move (X, -.25m, X)",
+                {0, -4.25, 0}}),
+    [](const auto& tip) {
+        std::string name = tip.param.name;
+        name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+        return name;
+    });
+
+}  // namespace
+}  // namespace sgm::pipeline
