@@ -7,6 +7,9 @@ namespace {
 class FannedMesh {
 public:
     FannedMesh(const Mesh& mesh, std::span<const TipFan> fans) {
+        const size_t vertices = mesh.vertexCount(), triangles = mesh.triangleCount();
+        chunk_.positions.reserve(vertices), chunk_.normals.reserve(vertices);
+        chunk_.triangles.reserve(triangles), chunk_.origins.reserve(triangles), chunk_.labels.reserve(triangles);
         for (const Chunk& c : mesh.chunks) addArrays(c);
         fans_.resize(chunk_.triangles.size(), nullptr), isRemoved_.resize(chunk_.triangles.size());
         for (const TipFan& fan : fans) {

@@ -14,8 +14,9 @@ namespace {
 
 constexpr uint32_t none = 0xffffffffu;
 constexpr Label noLabel = 0xffffffffu;
-/// The mean of the normals around a tip is shorter, as of cones within 48° of their axis.
-constexpr float widestTip = 0.75f;
+/// The mean of the normals around a tip is shorter, as of cones within 30° of their axis; along edges of 90° it is .7
+/// or more.
+constexpr float widestTip = 0.7f;
 constexpr size_t mostOfPart = 64;  ///< candidates: a part with more is a fractal or rough
 constexpr double nearer = 0.25;    ///< of the way from a vertex to its apex: no other vertex is as near to that
 // In cells:

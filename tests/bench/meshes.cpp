@@ -9,10 +9,10 @@
 
 #include "cli/requests.h"
 #include "grammar/lower/solid_tree.h"
+#include "grammar/pipeline/mesh_edits.h"
 #include "grammar/pipeline/products.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/export/exporter.h"
-#include "modeler/mesh/simplify.h"
 
 namespace sgm::bench {
 namespace {
@@ -138,8 +138,8 @@ Result<MeshRow> measureRow(const Prepared& p, int resolution, const MeshesOption
             least(surface == mesh::Surface::Cubes ? row.cubesSeconds : row.crispSeconds, watch.seconds(), i);
             if (!meshed.ok()) return meshed.error();
             if (surface == mesh::Surface::Crisp) {  // as `sgm build` does
-                const mesh::SimplifyOptions simplification{mesh::usualTolerance(meshed->grid.cell_m), grid.threads};
-                auto simple = mesh::simplify(meshed->mesh, simplification, nullptr);
+                auto simple = pipeline::edited(std::move(meshed->mesh), {},
+                                               {p.model.tape, surface, meshed->grid.cell_m}, context);
                 if (!simple.ok()) return simple.error();
                 meshed->mesh = std::move(*simple);
                 least(row.seconds, watch.seconds(), i);

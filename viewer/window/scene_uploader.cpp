@@ -2,10 +2,9 @@
 
 #include <utility>
 
+#include "grammar/pipeline/mesh_edits.h"
 #include "modeler/core/guarded.h"
-#include "modeler/core/packages.h"
 #include "modeler/core/stopwatch.h"
-#include "modeler/mesh/simplify.h"
 
 namespace sgm::window {
 namespace {
@@ -188,9 +187,9 @@ Status SceneUploader::makeMesh(std::shared_ptr<const document::BuiltMesh> meshed
     UploadResult<render::MeshScene> ready;
     Stopwatch watch;
     // As it would be exported.
-    Result<mesh::Mesh> simple = isBuiltWith(Package::Cgal) ? mesh::Mesh() : *meshed->mesh;
-    if (meshed->mesh->triangleCount() > 0 && isBuiltWith(Package::Cgal))
-        simple = mesh::simplify(*meshed->mesh, {mesh::usualTolerance(meshed->grid.cell_m), 0}, &progress);
+    pipeline::Context context{&progress, 0};
+    const Result<mesh::Mesh> simple = pipeline::edited(
+        *meshed->mesh, {}, {meshed->of->model.tape, mesh::Surface::Crisp, meshed->grid.cell_m}, context);
     if (!simple) return simple.error();
     const Result<render::PreparedMesh> mesh = render::prepareMesh(*simple, meshed->of->model.lowered->provenance);
     if (!mesh) return mesh.error();
