@@ -22,7 +22,7 @@ inline constexpr bool isSlow = true;
 #endif
 
 /// A test's bound in seconds, as it holds for a release.
-constexpr double boundSeconds(double bound) { return isSlow ? 20 * bound : bound; }
+constexpr double boundSeconds(double bound) { return isSlow ? 10 * bound : bound; }
 
 /// CPU seconds that a clock has counted: of the process (CLOCK_PROCESS_CPUTIME_ID) or of one thread.
 inline double secondsOf(clockid_t clock) {

@@ -15,10 +15,10 @@ constexpr double leastDeterminant = 1e-4;  ///< of the mean of n nᵀ: below it,
 constexpr double cuts[] = {1.5, 2, 3, 4, farthestCut};
 constexpr int rounds = 6;  ///< to find the apex
 // In cells:
-constexpr double exactly = 1e-3;      ///< what rounding leaves of the apex from planes around it
-constexpr double leastDepth = 0.05;   ///< of the highest vertex below the apex
-constexpr double onSurface = 0.03;    ///< the field at the apex, and the apex from the planes around it
-constexpr double nearSurface = 0.25;  ///< the field on the triangles of the fan
+constexpr double apexRounding = 1e-3;  ///< what rounding leaves of the apex from planes around it
+constexpr double leastDepth = 0.05;    ///< of the highest vertex below the apex
+constexpr double onSurface = 0.03;     ///< the field at the apex, and the apex from the planes around it
+constexpr double nearSurface = 0.25;   ///< the field on the triangles of the fan
 
 constexpr size_t mostCutOff = 3000;  ///< triangles around vertices
 
@@ -47,7 +47,7 @@ public:
             agrees_ = true;
             apex_ = meeting->point;
             axis_ = normalized(apex_ - middle());
-            within_m = std::clamp(meeting->error, exactly * surface_.cell_m, onSurface * surface_.cell_m);
+            within_m = std::clamp(meeting->error, apexRounding * surface_.cell_m, onSurface * surface_.cell_m);
         }
         if (!isApex()) return {};
         TipFan made{top_, apex_.as<float>(), {}, {}};

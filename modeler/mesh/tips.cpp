@@ -14,9 +14,9 @@ namespace {
 
 constexpr uint32_t none = 0xffffffffu;
 constexpr Label noLabel = 0xffffffffu;
-/// The mean of the normals around a tip is shorter, as of cones within 30° of their axis; along edges of 90° it is .7
-/// or more.
-constexpr float widestTip = 0.7f;
+/// The mean of the normals around a tip is shorter: as of smooth cones within 45° of their axis, and as of pyramids
+/// within 30°, for along edges of 90° it is .7 or more.
+constexpr float widestSmooth = 0.85f, widestCreased = 0.7f;
 constexpr size_t mostOfPart = 64;  ///< candidates: a part with more is a fractal or rough
 constexpr double nearer = 0.25;    ///< of the way from a vertex to its apex: no other vertex is as near to that
 // In cells:
@@ -135,8 +135,14 @@ private:
     struct Sum {
         Vec3f normals;
         float count = 0;
+        bool isCreased = false;
+
+        void add(const TipTriangle& t) {
+            normals += t.normals[0] + t.normals[1] + t.normals[2], count += 3;
+            isCreased |= t.ownNormals != 0;
+        }
         bool isWide() const {
-            const float most = widestTip * count;
+            const float most = (isCreased ? widestCreased : widestSmooth) * count;
             return dot(normals, normals) < most * most;
         }
     };
@@ -144,30 +150,27 @@ private:
     PageVector<Sum> sumsOfNormals() const {
         PageVector<Sum> sums;
         sums.resize(positions_.size());
-        std::vector<std::vector<Sum>> borrowed(mesh_.chunks.size());
+        // Triangles at vertices that other chunks own are added afterwards, in the chunks' order.
+        std::vector<std::vector<TipTriangle>> borrowing(mesh_.chunks.size());
+        const auto add = [&](const Chunk& chunk, const TipTriangle& t, bool own) {
+            for (int k = 0; k < 3; ++k) {
+                const uint32_t v = t.corners[k] - chunk.firstVertex;
+                if ((v < chunk.positions.size()) == own) sums[t.corners[k]].add(t);
+            }
+        };
         inChunks([&](size_t c) {
             const Chunk& chunk = mesh_.chunks[c];
-            Sum* const own = sums.data() + chunk.firstVertex;
-            std::fill(own, own + chunk.positions.size(), Sum{});
-            borrowed[c].resize(chunk.ghosts.vertices.size());
-            auto normal = chunk.cornerNormals.begin();
-            for (uint32_t t = 0; t < chunk.triangles.size(); ++t) {
-                const Triangle corners = chunk.triangles[t], inMesh = chunk.inMesh(corners);
-                std::array<Vec3f, 3> n{normals_[inMesh.x], normals_[inMesh.y], normals_[inMesh.z]};
-                for (; normal != chunk.cornerNormals.end() && normal->corner / 3 == t; ++normal)
-                    n[normal->corner % 3] = normal->normal;
-                const Vec3f all = n[0] + n[1] + n[2];
-                for (int k = 0; k < 3; ++k) {
-                    Sum& sum = corners[k] & ghostBit ? borrowed[c][corners[k] & ~ghostBit] : own[corners[k]];
-                    sum.normals += all, sum.count += 3;
-                }
-            }
+            std::fill_n(sums.data() + chunk.firstVertex, chunk.positions.size(), Sum{});
+            visitTriangles(
+                c, [](const Triangle&) { return true; },
+                [&](const TipTriangle& t) {
+                    add(chunk, t, true);
+                    const Triangle& corners = chunk.triangles[t.number - firstTriangle_[c]];
+                    if ((corners.x | corners.y | corners.z) & ghostBit) borrowing[c].push_back(t);
+                });
         });
-        for (size_t c = 0; c < borrowed.size(); ++c)
-            for (size_t i = 0; i < borrowed[c].size(); ++i) {
-                Sum& sum = sums[mesh_.chunks[c].ghosts.vertices[i]];
-                sum.normals += borrowed[c][i].normals, sum.count += borrowed[c][i].count;
-            }
+        for (size_t c = 0; c < borrowing.size(); ++c)
+            for (const TipTriangle& t : borrowing[c]) add(mesh_.chunks[c], t, false);
         return sums;
     }
 
@@ -257,7 +260,7 @@ private:
         candidates_.resize(kept);
     }
 
-    /// Those of some vertices.
+    /// The candidates among some vertices.
     std::vector<Candidate> candidatesOf(std::span<const WideVertex> vertices) {
         std::vector<Candidate> found;
         std::vector<Vec3f> apexes;
@@ -333,6 +336,7 @@ private:
         return vertices;
     }
 
+    /// Drops fans that cross triangles, or may cross a fan before.
     void dropCrossing(std::vector<TipFan>& fans) const {
         std::vector<Box3f> boxes;
         for (const TipFan& fan : fans) {
@@ -350,8 +354,13 @@ private:
             for (const uint32_t i : found) near[i].push_back(t);
         }
         size_t kept = 0;
-        for (size_t i = 0; i < fans.size(); ++i)
-            if (!crosses(surface_, fans[i], near[i])) std::swap(fans[kept++], fans[i]);
+        for (size_t i = 0; i < fans.size(); ++i) {
+            const auto meets = [&](const Box3f& box) { return !intersection(box, boxes[i]).empty(); };
+            const auto end = boxes.begin() + static_cast<ptrdiff_t>(kept);
+            if (std::any_of(boxes.begin(), end, meets) || crosses(surface_, fans[i], near[i])) continue;
+            boxes[kept] = boxes[i];
+            std::swap(fans[kept++], fans[i]);
+        }
         fans.resize(kept);
     }
 
