@@ -112,6 +112,7 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     findUnreachable(grammar, diagnostics);
     findShadowed(grammar, diagnostics);
     findSharesOfNothing(grammar, diagnostics);
+    findUnsized(grammar, diagnostics);
     findWaitingCycles(grammar, diagnostics);
     findEndless(grammar, diagnostics);
     warnOfVersion(files.asts.back(), diagnostics);

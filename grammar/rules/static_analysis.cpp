@@ -13,19 +13,6 @@
 namespace sgm::rules {
 namespace {
 
-/// Whether a component is a share other than 0 and 100 %.
-bool isShare(const Value& v) {
-    for (size_t i = 0; i < std::min<size_t>(v.count, v.units.size()); ++i)
-        if (v.units[i] == Unit::Share && v.n[i] != 1 && v.n[i] != 0) return true;
-    return false;
-}
-
-/// Whether such a share is written somewhere in it.
-bool holdsShare(const Expr& e) {
-    if (e.kind == Expr::Kind::Constant && isShare(e.value)) return true;
-    return std::any_of(e.args.begin(), e.args.end(), holdsShare);
-}
-
 std::set<SymbolId> reachable(const Grammar& grammar) {
     std::set<SymbolId> found;
     std::vector<SymbolId> open;
@@ -286,37 +273,6 @@ void findShadowed(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
                     "write 'when true' after it: a condition that holds wins; in 'grammar 2' a 'beside' that holds "
                     "does");
             }
-        }
-    }
-}
-
-bool takes(const Attribute& a, syntax::ArgumentType type) {
-    return !a.args.empty() && !a.operation->arguments.empty() && a.operation->arguments[0].type == type;
-}
-
-bool givesSize(const Attribute& a) { return takes(a, syntax::ArgumentType::Size); }
-
-/// Warns of a share among the sizes and moves of an element whose scope is that of a start, 1 m.
-void findSharesOfNothing(const Element& element, const std::vector<Value>& params, syntax::Diagnostics& diagnostics) {
-    for (const Attribute& a : element.attributes) {
-        const bool moves = a.operation->phase == Operation::Phase::Scope && takes(a, syntax::ArgumentType::Vector);
-        if (!givesSize(a) && !moves) continue;
-        const auto value = fold(a.args[0], params);
-        if (value ? isShare(*value) : holdsShare(a.args[0]))
-            diagnostics.warning(a.span, "a share of what? A start's own scope is 1m",
-                                "write lengths, such as '.5m' for 50%");
-    }
-}
-
-void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
-    for (uint32_t s = 0; s < grammar.starts.size(); ++s) {
-        const std::vector<Value> params = valuesOf(grammar, s);
-        for (const auto& chain : grammar.starts[s].body.siblings) {
-            if (chain.empty() || chain[0].kind != Element::Kind::Shape || chain[0].content.empty()) continue;
-            if (std::any_of(chain[0].prefix.begin(), chain[0].prefix.end(), givesSize)) continue;
-            for (const Element& element : chain)
-                if (&element == &chain[0] || (element.inMatchedFrame && !element.on))
-                    findSharesOfNothing(element, params, diagnostics);
         }
     }
 }

@@ -17,6 +17,9 @@ void findShadowed(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 /// Warns of shares (%) at the first shapes of a start, which have no scope but the start's own of 1 m.
 void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 
+/// Warns of solids that join the first shape of a start, which has a size, without one of their own: they are 1 m.
+void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics);
+
 /// Warns of symbols that wait for each other by `after`: nothing decides which comes first. Once a cycle.
 void findWaitingCycles(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 

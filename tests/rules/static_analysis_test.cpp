@@ -145,6 +145,16 @@ TEST(Shares, OfAStartsOwnScopeAreTold) {
     EXPECT_EQ(checkedBody("start A -> size 4 cube size 50%\n").messages(), "");
 }
 
+TEST(Unsized, SolidsThatJoinASizedOneInAStartAreTold) {
+    const std::string told = "warning: 'sphere' has no size, and a start's own scope is 1m\n";
+    EXPECT_EQ(checked("grammar 2\nstart A -> cube size 4 + sphere at +y\n").messages(), told);
+    EXPECT_EQ(checked("grammar 2\nstart A -> footprint rect(9, 8) extrude 5m cube + sphere\n").messages(), told);
+    EXPECT_EQ(checked("grammar 2\nstart A -> cube size 4 + sphere size 2 at +y\n").messages(), "");
+    EXPECT_EQ(checked("grammar 2\nstart A -> cube size 4 + sphere at +y on last\n").messages(), "");
+    EXPECT_EQ(checked("grammar 2\nstart A -> cube + sphere at +y\n").messages(), "");
+    EXPECT_EQ(checked("grammar 2\nstart A -> B size 4\nrule B -> cube + sphere at +y\n").messages(), "");
+}
+
 TEST(Doubts, OfConstantsAreToldAtOnce) {
     EXPECT_EQ(checkedBody("start A -> cube color rgb(255, 0, 0)\n").messages(),
               "warning: 'rgb' takes shares 0 … 1, but this is 255\n");

@@ -1,0 +1,89 @@
+// What the scope of a start, 1 m wide and about the origin, makes of its first shapes.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "grammar/rules/evaluate.h"
+#include "grammar/rules/params.h"
+#include "grammar/rules/static_analysis.h"
+#include "grammar/rules/value.h"
+
+namespace sgm::rules {
+namespace {
+
+/// Whether a component is a share other than 0 and 100 %.
+bool isShare(const Value& v) {
+    for (size_t i = 0; i < std::min<size_t>(v.count, v.units.size()); ++i)
+        if (v.units[i] == Unit::Share && v.n[i] != 1 && v.n[i] != 0) return true;
+    return false;
+}
+
+/// Whether such a share is written somewhere in it.
+bool holdsShare(const Expr& e) {
+    if (e.kind == Expr::Kind::Constant && isShare(e.value)) return true;
+    return std::any_of(e.args.begin(), e.args.end(), holdsShare);
+}
+
+bool takes(const Attribute& a, syntax::ArgumentType type) {
+    return !a.args.empty() && !a.operation->arguments.empty() && a.operation->arguments[0].type == type;
+}
+
+bool givesSize(const Attribute& a) { return takes(a, syntax::ArgumentType::Size); }
+
+/// Whether anything says how large the element is: a size, a plan, a height, or points that it spans.
+bool isSized(const Element& e) {
+    const auto sizes = [](const Attribute& a) {
+        return a.operation->phase == Operation::Phase::Scope &&
+               (givesSize(a) || takes(a, syntax::ArgumentType::Plan) || takes(a, syntax::ArgumentType::Length) ||
+                takes(a, syntax::ArgumentType::Point));
+    };
+    return std::any_of(e.prefix.begin(), e.prefix.end(), sizes) ||
+           std::any_of(e.attributes.begin(), e.attributes.end(), sizes);
+}
+
+/// Warns of a share among the sizes and moves of an element whose scope is that of a start, 1 m.
+void findSharesOfNothing(const Element& element, const std::vector<Value>& params, syntax::Diagnostics& diagnostics) {
+    for (const Attribute& a : element.attributes) {
+        const bool moves = a.operation->phase == Operation::Phase::Scope && takes(a, syntax::ArgumentType::Vector);
+        if (!givesSize(a) && !moves) continue;
+        const auto value = fold(a.args[0], params);
+        if (value ? isShare(*value) : holdsShare(a.args[0]))
+            diagnostics.warning(a.span, "a share of what? A start's own scope is 1m",
+                                "write lengths, such as '.5m' for 50%");
+    }
+}
+
+}  // namespace
+
+void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
+    for (uint32_t s = 0; s < grammar.starts.size(); ++s) {
+        const std::vector<Value> params = valuesOf(grammar, s);
+        for (const auto& chain : grammar.starts[s].body.siblings) {
+            if (chain.empty() || chain[0].kind != Element::Kind::Shape || chain[0].content.empty()) continue;
+            if (std::any_of(chain[0].prefix.begin(), chain[0].prefix.end(), givesSize)) continue;
+            for (const Element& element : chain)
+                if (&element == &chain[0] || (element.inMatchedFrame && !element.on))
+                    findSharesOfNothing(element, params, diagnostics);
+        }
+    }
+}
+
+void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
+    for (const Start& start : grammar.starts) {
+        for (const auto& chain : start.body.siblings) {
+            if (chain.empty() || chain[0].kind != Element::Kind::Shape || !isSized(chain[0])) continue;
+            for (size_t i = 1; i < chain.size(); ++i) {
+                const Element& e = chain[i];
+                if (e.kind != Element::Kind::Shape || !e.inMatchedFrame || e.on || isSized(e)) continue;
+                if (e.content.solid() && e.content.solid()->kind == Solid::Kind::Nil) continue;
+                if (!e.content.solid() && (e.content.symbol() == none || !grammar.symbols[e.content.symbol()].terminal))
+                    continue;
+                diagnostics.warning(e.span, fmt::format("'{}' has no size, and a start's own scope is 1m", e.label),
+                                    "write its size, such as 'size (4, 3, 4)', or let it grow in a rule, where it "
+                                    "fills the matched scope");
+            }
+        }
+    }
+}
+
+}  // namespace sgm::rules
