@@ -113,6 +113,17 @@ TEST_F(Parts, FrameFitsTheBoxTightly) {
         }
 }
 
+TEST_F(Parts, TheGroundLiesWhereTheSolidEnds) {
+    Scene scene;
+    scene.add("cube", {0, 0, 0}, {2, 2, 2}, {.6f, .6f, .6f});
+    scene.add("cube", {2, 1, 0}, {.5, .5, .5}, {.6f, .6f, .6f});
+    const field::Field solid = field::blend(scene.graph, scene.parts, scene.graph.slot(.8f), .8);
+    ASSERT_LT(solid.bounds.lo.y, -2.05f) << "a blend's bounds reach below what it holds";
+    const Box3f tight = tighten(scene.compile(solid), solid.bounds);
+    EXPECT_LE(tight.lo.y, -2);
+    EXPECT_GT(tight.lo.y, -2.01f);
+}
+
 TEST_F(Parts, PngKeepsEveryByte) {
     Image image{37, 19, {}};
     for (int i = 0; i < 37 * 19 * 3; ++i) image.rgb.push_back(static_cast<uint8_t>(mix(uint64_t(i))));

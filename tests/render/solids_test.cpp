@@ -223,14 +223,14 @@ TEST_F(Solids, NooksAreEvenlyDark) {
     options.ground = false;
     options.samples = 1;
     const Layers layers = layersOf(scene.compile(solid), solid.bounds, scene.provenance, options, TracedBy::Processor);
-    // Pixels that the walls' line crosses, at (2, 0): half of the day is hidden from either wall, and more by this
-    // measure.
+    // Pixels that the walls' line crosses, at (2, 0): half of the day is hidden from either wall, and a little more by
+    // this measure.
     size_t crossed = 0;
     for (size_t i = 0; i < layers.ao.size(); ++i) {
         const Vec3f p = layers.position[i];
         if (layers.depth[i] == Layers::farAway || std::abs(p.y) > 1.5f || std::hypot(p.x - 2, p.z) > .008f) continue;
         ++crossed;
-        EXPECT_LT(layers.ao[i], .35f);
+        EXPECT_NEAR(layers.ao[i], .42f, .05f);
     }
     EXPECT_GT(crossed, 20u);
 }

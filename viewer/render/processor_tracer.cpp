@@ -218,6 +218,12 @@ private:
         for (size_t i = 0; i < which.size(); ++i) slopes[which[i]] = lifted[i];
     }
 
+    /// What a place above a hit tells of the sky that is hidden there: `nearness` is 0 where solid is as far away as
+    /// the hit, 1 on a surface and 2 as deep in solid. Beside a wall half of the sky is seen; in a gap nothing.
+    static float hiddenShare(float nearness) {
+        return nearness < 1 ? 0.65f * std::max(nearness, 0.0f) : std::min(0.65f + 0.35f * (nearness - 1), 1.0f);
+    }
+
     /// Share of the sky that each hit sees, from the field at growing distances along the normal.
     void setOpenness(std::span<const Hit> hits, std::span<Shading> shadings, BatchedEvaluator& evaluator,
                      TraceCost& cost) const {
@@ -245,7 +251,7 @@ private:
                     of.push_back({i, enough, beyond, cell.doubtful});
                     questions.push_back({within, cell.tape});
                 } else if (cell.state == CellState::Inside) {
-                    shadings[i].openness -= 0.25f * (1 - beyond / most);
+                    shadings[i].openness -= 0.25f * hiddenShare((most + cells.margin - beyond) / most);
                 }
             }
         }
@@ -264,7 +270,7 @@ private:
         for (size_t k = 0; k < walks.size(); ++k) free[walked[k]] = walks[k].clearance();
         for (size_t j = 0; j < of.size(); ++j)
             shadings[of[j].hit].openness -=
-                0.25f * std::clamp((of[j].enough - free[j]) / (of[j].enough + of[j].beyond), 0.0f, 1.0f);
+                0.25f * hiddenShare((of[j].enough - free[j]) / (of[j].enough + of[j].beyond));
         // A little stays even where things touch: light creeps in.
         for (Shading& lit : shadings) lit.openness = 0.08f + 0.92f * lit.openness;
     }

@@ -1,5 +1,6 @@
 #include "viewer/render/samples.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "modeler/eval/evaluate.h"
@@ -69,6 +70,59 @@ std::vector<Vec3f> Samples::placesBelow(float below) const {
     return places;
 }
 
+namespace {
+
+/// Whether intervals prove that no solid is in the box, cut into up to 4⁵ columns. O(columns).
+bool provenEmpty(const eval::Tape& tape, const Box3f& box) {
+    std::vector<Box3f> open{box};
+    eval::Workspace workspace;
+    for (int depth = 0; depth <= 5 && !open.empty(); ++depth) {
+        std::vector<Vec3f> centres;
+        for (const Box3f& column : open) centres.push_back(column.centre());
+        for (const float value : valuesAt(tape, centres))
+            if (value <= 0) return false;
+        std::vector<eval::FloatInterval> ranges(open.size());
+        for (size_t i = 0; i < open.size(); i += 64)
+            evaluateRanges(tape, {&open[i], std::min<size_t>(64, open.size() - i)}, &ranges[i], workspace);
+        std::vector<Box3f> parts;
+        for (size_t i = 0; i < open.size(); ++i) {
+            if (ranges[i].lo > 0) continue;
+            const Box3f& column = open[i];
+            const Vec3f middle = column.centre();
+            for (int part = 0; part < 4; ++part) {
+                Box3f quarter = column;
+                (part & 1 ? quarter.lo : quarter.hi).x = middle.x;
+                (part & 2 ? quarter.lo : quarter.hi).z = middle.z;
+                parts.push_back(quarter);
+            }
+        }
+        open = std::move(parts);
+    }
+    return open.empty();
+}
+
+/// `box` without the layers at its foot that hold no solid, to a thousandth of its size: the ground lies there, and
+/// bounds of smooth unions and displaced solids reach below what they hold.
+Box3f raiseFoot(const eval::Tape& tape, Box3f box, float cell) {
+    const float least = maxComponent(box.size()) / 1024, top = std::min(box.lo.y + 4 * cell, box.hi.y);
+    Box3f foot = box;
+    foot.hi.y = top;
+    eval::Workspace workspace;
+    eval::FloatInterval range;
+    const eval::Tape near = shorten(tape, evaluateRanges(tape, {&foot, 1}, &range, workspace), 0, workspace);
+    for (float height = 2 * cell; height >= least;) {
+        Box3f layer = box;
+        layer.hi.y = box.lo.y + height;
+        if (layer.hi.y < top && provenEmpty(near, layer))
+            box.lo.y = layer.hi.y;
+        else
+            height /= 2;
+    }
+    return box;
+}
+
+}  // namespace
+
 Box3f tighten(const eval::Tape& tape, const Box3f& bounds) {
     if (bounds.empty() || !bounds.finite() || !(maxComponent(bounds.size()) > 0)) return bounds;
     const Samples grid = sample(tape, bounds);
@@ -77,7 +131,7 @@ Box3f tighten(const eval::Tape& tape, const Box3f& bounds) {
     Box3f tight;
     for (const Vec3f& place : grid.placesBelow(reach * tape.lipschitz()))
         tight = hull(tight, Box3f{place, place}.inflated(grid.cell / 2));
-    return tight.empty() ? bounds : intersection(tight, bounds);
+    return tight.empty() ? bounds : raiseFoot(tape, intersection(tight, bounds), grid.cell);
 }
 
 }  // namespace sgm::render

@@ -160,6 +160,12 @@ float shareOfPart(float clearance) { return smoothstep(0.0, 1.0, clearance); }
 /// Share of a disc that is free, by how far a straight edge is from its middle.
 float shareOfDisc(float clearance) { return shareOfPart(0.5 + 0.5 * clearance); }
 
+/// What a place above a hit tells of the sky that is hidden there: `nearness` is 0 where solid is as far away as the hit, 1 on
+/// a surface and 2 as deep in solid. Beside a wall half of the sky is seen; in a gap nothing.
+float hiddenShare(float nearness) {
+    return nearness < 1.0 ? 0.65 * max(nearness, 0.0) : min(0.65 + 0.35 * (nearness - 1.0), 1.0);
+}
+
 /// Share of the sky that p sees, from the field at growing distances along the normal.
 float opennessAt(vec3 p, vec3 normal, float pixel) {
     float hidden = 0.0;
@@ -170,7 +176,7 @@ float opennessAt(vec3 p, vec3 normal, float pixel) {
         vec3 place = p + normal * reach, within = clamp(place, boundsLow, boundsHigh);
         float beyond = length(place - within);
         if (beyond < enough)
-            hidden += 0.25 * clamp(1.0 - (beyond + distanceAt(within, enough - beyond, pixel)) / enough, 0.0, 1.0);
+            hidden += 0.25 * hiddenShare(1.0 - (beyond + distanceAt(within, enough - beyond, pixel)) / enough);
         reach *= 0.4;
     }
     // A little stays even where things touch: light creeps in.
