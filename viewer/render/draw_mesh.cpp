@@ -26,7 +26,8 @@ Result<MeshPainter> MeshPainter::create(const mesh::Mesh& mesh, const Provenance
     if (!gpu) return gpu.error();
     auto programs = MeshPrograms::create();
     if (!programs) return programs.error();
-    auto parts = std::shared_ptr<Parts>(new Parts{std::move(*gpu), MeshScene(*prepared, std::move(*programs))});
+    auto parts = std::shared_ptr<Parts>(
+        new Parts{std::move(*gpu), MeshScene(*prepared, std::move(*programs), MeshScene::skyMapsOfPictures)});
     if (Status status = parts->scene.light(progress); !status) return status.error();
     return MeshPainter(std::move(parts));
 }

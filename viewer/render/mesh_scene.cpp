@@ -18,11 +18,11 @@ namespace {
 constexpr size_t batchTriangles = 1u << 17;  // a draw
 constexpr float lineWidth = 1.6f;            // of hard edges, pixels
 constexpr int sunMapEdge = 2048, skyMapEdge = 256;
-constexpr size_t leastSkyMaps = 12, mostSkyMaps = 40;  // the latter as in visibility.glsl
+constexpr size_t leastSkyMaps = 12;
 
 /// As many as the driver draws in a second or less; software draws some 3 million triangles a second
 /// (docs/lab/pictures.md).
-size_t skyMapsFor(size_t triangles) {
+size_t skyMapsFor(size_t triangles, size_t mostSkyMaps) {
     const size_t drawn = softwareGl() ? size_t{5} << 19 : size_t{24} << 20;
     return std::clamp(drawn / std::max<size_t>(triangles, 1), leastSkyMaps, mostSkyMaps);
 }
@@ -192,7 +192,7 @@ Result<std::shared_ptr<const MeshPrograms>> MeshPrograms::create() {
     return std::shared_ptr<const MeshPrograms>(programs);
 }
 
-MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs)
+MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs, size_t mostSkyMaps)
     : programs_(std::move(programs)),
       bounds_(mesh.bounds),
       triangles_(TriangleBuffers::of(mesh.positions, mesh.normals, mesh.curvatures, mesh.triangles)),
@@ -201,7 +201,7 @@ MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshProgram
       hardEdges_(mesh.hardEdges),
       materials_(uploadMaterials(mesh.materials)),
       textured_(!mesh.textures.frames.empty()) {
-    maps_.skyCount = skyMapsFor(triangleCount_);
+    maps_.skyCount = skyMapsFor(triangleCount_, mostSkyMaps);
     makeMaps();
     if (!textured_) return;
     frameOfTriangle_ = TexelBuffer::of(mesh.textures.frameOfTriangle, 1);
@@ -228,6 +228,11 @@ void MeshScene::makeMaps() {
     maps_.sun = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
     maps_.sky = MapStack::create(MapStack::Kind::Number, skyMapEdge, static_cast<int>(maps_.skyCount));
     maps_.skyDepth = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
+    std::vector<Matrix4> matrices;
+    for (size_t i = 0; i < maps_.skyCount; ++i)
+        matrices.push_back(
+            lightMatrix(skyDirection(i, maps_.skyCount), bounds_.centre().as<double>(), mapSpan(bounds_), 0, 1));
+    maps_.matrices = Buffer::of<Matrix4>(matrices);
 }
 
 /// All triangles, in batches.
@@ -279,14 +284,10 @@ Result<bool> MeshScene::lightMore(Progress* progress) {
 void MeshScene::setLight(const Program& program, bool sky) const {
     const Vec3d centre = bounds_.centre().as<double>();
     const double span = mapSpan(bounds_);
-    std::vector<Matrix4> matrices(mostSkyMaps, Matrix4{});
-    for (size_t i = 0; i < maps_.skyCount; ++i)
-        matrices[i] = lightMatrix(skyDirection(i, maps_.skyCount), centre, span, 0, 1);
     program.set("ownerOfTriangle", 0);
     program.set("sunMap", 1);
     program.set("skyMaps", 2);
     program.set("sunFromWorld", lightMatrix(sunDirection().as<double>(), centre, span, 0, 1));
-    program.set("skyFromWorld", std::span<const Matrix4>(matrices));
     program.set("mapSpan", static_cast<float>(span));
     program.set("skyCount", sky ? static_cast<int>(maps_.skyCount) : 0);
 }
@@ -332,6 +333,7 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
     owners_.bind(0);
     maps_.sun.bindTexture(1);
     maps_.sky.bindTexture(2);
+    maps_.matrices.bindStorage(6);
     materials_.bindStorage(4);
     bindTextures(color);
     const double left = x0 + subsample.right, low = y0 - subsample.down;

@@ -50,7 +50,11 @@ struct Subsample {
 /// A prepared mesh in GPU memory. May be made in one context and drawn in another that shares with it.
 class MeshScene {
 public:
-    MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs);
+    /// Directions of sky whose light is told apart: in a window, where every frame asks all of them, and in a picture.
+    static constexpr size_t skyMapsOfWindows = 40, skyMapsOfPictures = 128;
+
+    MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs,
+              size_t mostSkyMaps = skyMapsOfWindows);
     /// Of triangles that a shader has made, with the owner of each: all of one component, a piece a part, without
     /// curvature and hard edges.
     MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds,
@@ -97,6 +101,7 @@ private:
     /// Maps of shadow and sky.
     struct LightMaps {
         MapStack sun, sky, skyDepth;
+        Buffer matrices;  // of the sky's
         size_t skyCount = 0, drawn = 0;
     };
     LightMaps maps_;
