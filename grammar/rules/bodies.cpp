@@ -265,7 +265,7 @@ void checkChoose(CheckContext& ctx, Place& place, const syntax::Element& written
     const auto grow = [](const Choice& c) { return grows(*c.body); };
     if (std::any_of(out.choices.begin(), out.choices.end(), grow))
         for (const Choice& c : out.choices)
-            if (!grow(c) && !isNil(*c.body))
+            if (c.body->span.source && !grow(c) && !isNil(*c.body))  // without one the text was refused before
                 ctx.diagnostics.error(c.body->span, "this alternative replaces what stands, but others grow on it",
                                       "begin every alternative with an operator, or none");
 }
