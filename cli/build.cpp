@@ -169,7 +169,8 @@ void addBuild(CLI::App& app, int& exitCode) {
         ->add_option("--animate", request->animations,
                      "Run a parameter through frames, NAME=FROM..TO:FRAMES; -o needs a number: roof_%04d.glb")
         ->allow_extra_args(false);
-    command->add_option("--report", request->report, "Write the figures of this build as JSON");
+    command->add_option("--report", request->report,
+                        "Write the figures of this build as JSON; - prints them instead of the summary");
     command->add_flag("--cave", request->cave,
                       "Report on the empty space in the rock: spaces, rooms, passages, entrances, floors, ways");
     command

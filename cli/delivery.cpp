@@ -178,9 +178,13 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
     if (!request.report.empty()) {
         const std::string json = reportJson(model, meshed, figures.mesh, scene, figures.support, figures.missing,
                                             figures.cave, context.stages, request.grid.threads);
-        if (const Status s = pipeline::writeText(request.report, json); !s.ok()) return s;
+        if (reportsToStdout(request))
+            fmt::print("{}\n", json);
+        else if (const Status s = pipeline::writeText(request.report, json); !s.ok())
+            return s;
     }
-    if (!request.quiet) printSummary(request, model, *products, scene, meshed.grid, figures, context.stages);
+    if (!request.quiet && !reportsToStdout(request))
+        printSummary(request, model, *products, scene, meshed.grid, figures, context.stages);
     return Done{};
 }
 

@@ -27,6 +27,9 @@ inline ProgressDisplay displayOf(const BuildRequest& request) {
     return request.quiet ? ProgressDisplay::None : ProgressDisplay::Terminal;
 }
 
+/// Whether the report is printed, in place of the summary.
+inline bool reportsToStdout(const BuildRequest& request) { return request.report == "-"; }
+
 /// Whether the cave is surveyed.
 inline bool surveys(const BuildRequest& request) { return request.cave || !request.floor.empty(); }
 /// Whether the blocks are needed, from which a level set is sampled.

@@ -91,8 +91,9 @@ std::vector<Target> targetsOf(const BuildRequest& request, int frames) {
     for (int frame = 0; frame < std::max(frames, 1); ++frame) {
         const BuildRequest one = frames == 0 ? request : *requestOf(request, frame);
         for (const std::string& file : one.out.files) targets.push_back({"-o", file});
-        for (const auto& [option, file] :
-             {std::pair("--proxy", one.out.proxy), {"--floor", one.floor}, {"--report", one.report}})
+        for (const auto& [option, file] : {std::pair("--proxy", one.out.proxy),
+                                           {"--floor", one.floor},
+                                           {"--report", reportsToStdout(one) ? "" : one.report}})
             if (!file.empty()) targets.push_back({option, file});
     }
     return targets;

@@ -114,12 +114,13 @@ Error writeError(const fs::path& path, int errorNumber) {
 }
 
 Status checkTarget(const fs::path& target) {
+    struct stat old {};
+    // Of `target`, for a link of /dev/fd to a pipe leads to no file by its name.
+    if (stat(target.c_str(), &old) == 0 && !S_ISREG(old.st_mode)) return writeError(target, "it is not a regular file");
     const fs::path path = resolved(target), folder = folderOf(path);
     std::error_code error;
     if (!fs::is_directory(folder, error))
         return writeError(target, fmt::format("there is no folder '{}'", folder.string()));
-    struct stat old {};
-    if (stat(path.c_str(), &old) == 0 && !S_ISREG(old.st_mode)) return writeError(target, "it is not a regular file");
     if (access(folder.c_str(), W_OK | X_OK) != 0) return writeError(target, errno);
     return Done{};
 }

@@ -52,6 +52,17 @@ TEST_F(Cli, EditsWithoutAMeshAndNumbersWithoutFramesAreTold) {
     EXPECT_EQ(sgm(start + "--smooth 2 --tolerance 5mm -o " + path("a.glb")).out.find("keeps all"), std::string::npos);
 }
 
+TEST_F(Cli, AReportIsPrintedOnDemandAndRefusedBeforeTheWork) {
+    const std::string start = "build examples/joints.sgm --resolution 32 -o " + path("a.glb") + " --report ";
+    const Outcome printed = sgm(start + "- -q");
+    ASSERT_EQ(printed.code, 0) << printed.out;
+    EXPECT_EQ(Json::parse(printed.out)["mesh"]["components"], 1);
+    fs::remove(path("a.glb"));
+    const Outcome piped = sgm(start + "/dev/stdout");
+    EXPECT_NE(piped.out.find("not a regular file"), std::string::npos) << piped.out;
+    EXPECT_FALSE(fs::exists(path("a.glb")));
+}
+
 TEST_F(Cli, ALightMapIsThatOfObjectsWhereTheModelHasNoMeshOfItsOwn) {
     const std::string town =
         grammar("start Town -> size 8 Plot\nrule Plot -> place House\nstart House -> cube size 4\n");

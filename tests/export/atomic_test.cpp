@@ -205,6 +205,10 @@ TEST(ReplaceFile, TellsWhyItCannot) {
     EXPECT_NE(messageFor(folder / "file/a.ply").find("there is no folder"), std::string::npos);
     EXPECT_NE(messageFor(folder.path()).find("not a regular file"), std::string::npos);
     EXPECT_NE(messageFor("/dev/null").find("not a regular file"), std::string::npos);
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    EXPECT_NE(messageFor("/dev/fd/" + std::to_string(ends[1])).find("not a regular file"), std::string::npos);
+    for (const int end : ends) close(end);
     EXPECT_NE(messageFor("/proc/sgm-test.ply"), "") << "a folder nobody can write to";
 }
 
