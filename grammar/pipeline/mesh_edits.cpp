@@ -15,8 +15,12 @@ double toleranceOf(const MeshEdits& edits, mesh::Surface surface, float cell_m) 
 
 Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, const MeshSource& source, Context& context) {
     const mesh::Surface surface = source.surface;
-    if (surface == mesh::Surface::Crisp)
-        context.timed("tips", [&] { return mesh::completeTips(mesh, source.field, source.cell_m, context.threads); });
+    if (surface == mesh::Surface::Crisp) {
+        const auto completed = context.timed("tips", [&] {
+            return mesh::completeTips(mesh, source.field, source.cell_m, context.threads, context.progress);
+        });
+        if (!completed.ok()) return completed.error();
+    }
     if (edits.smooth > 0) {
         auto result = context.timed("smooth", [&] { return mesh::smooth(mesh, edits.smooth, context.progress); });
         if (!result.ok()) return result;

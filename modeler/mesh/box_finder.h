@@ -8,8 +8,14 @@
 #include <vector>
 
 #include "modeler/core/vec.h"
+#include "modeler/mesh/mesh.h"
 
 namespace sgm::mesh {
+
+/// The box around the corners of a triangle, metres.
+inline Box3f boxOf(std::span<const Vec3f> positions, const Triangle& t) {
+    return hull(hull(Box3f{positions[t.x], positions[t.x]}, positions[t.y]), positions[t.z]);
+}
 
 /// An index over boxes that don't change.
 class BoxFinder {

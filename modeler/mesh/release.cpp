@@ -266,10 +266,6 @@ private:
         return most;
     }
 
-    Box3f boxOf(const Triangle& t) const {
-        return hull(hull(Box3f{flat_.positions[t.x], flat_.positions[t.x]}, flat_.positions[t.y]),
-                    flat_.positions[t.z]);
-    }
     /// Whether a corner of a triangle isn't where it was at first, or when triangles were compared last.
     bool hasMovedFrom(Vec3f Move::*place, const Triangle& t) const {
         for (int i = 0; i < 3; ++i)
@@ -286,7 +282,7 @@ private:
             const Triangle& t = flat_.triangles[touched.triangle];
             if (!hasMovedFrom(&Move::compared, t)) continue;
             changed.push_back(touched.triangle);
-            boxes.push_back(boxOf(t));
+            boxes.push_back(boxOf(flat_.positions, t));
         }
         for (Move& move : moves_) move.compared = flat_.positions[move.vertex];
         std::vector<uint8_t> isChanged(flat_.triangles.size());
@@ -300,7 +296,7 @@ private:
             std::vector<uint32_t> found, beside;
             const size_t end = std::min(flat_.triangles.size(), (step + 1) * trianglesPerStep);
             for (size_t t = step * trianglesPerStep; t < end; ++t) {
-                finder.find(boxOf(flat_.triangles[t]), beside);
+                finder.find(boxOf(flat_.positions, flat_.triangles[t]), beside);
                 for (const uint32_t b : beside) {
                     const uint32_t other = changed[b];
                     if (isChanged[t] && other <= t) continue;  // compared from the other one's side, or the same

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "modeler/mesh/box_finder.h"
 #include "modeler/mesh/exact_meeting.h"
 
 namespace sgm::mesh {
@@ -259,12 +260,9 @@ bool crosses(const TipSurface& surface, const TipFan& fan, std::span<const uint3
     for (const TipTriangle& t : fan.triangles) add(t);
     for (const uint32_t t : near)
         if (!std::binary_search(fan.removed.begin(), fan.removed.end(), t)) add(surface.triangles[t]);
-    const auto boxOf = [&](const Triangle& t) {
-        return hull(hull(Box3f{positions[t.x], positions[t.x]}, positions[t.y]), positions[t.z]);
-    };
     for (size_t i = 0; i < fan.triangles.size(); ++i)
         for (size_t j = i + 1; j < triangles.size(); ++j)
-            if (!intersection(boxOf(triangles[i]), boxOf(triangles[j])).empty() &&
+            if (!intersection(boxOf(positions, triangles[i]), boxOf(positions, triangles[j])).empty() &&
                 meetWrongly(positions, triangles[i], triangles[j]))
                 return true;
     return false;

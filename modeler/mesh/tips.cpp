@@ -43,14 +43,16 @@ struct WideVertex {
 
 class Tips {
 public:
-    Tips(const Mesh& mesh, const eval::Tape& field, double cell_m, int threads)
-        : mesh_(mesh), threads_(threads), surface_{{}, isConfined_, {}, {}, {}, field, workspace_, cell_m} {
+    Tips(const Mesh& mesh, const eval::Tape& field, double cell_m, int threads, Progress* progress)
+        : mesh_(mesh), threads_(threads), progress_(progress), surface_{{}, isConfined_, {},         {},
+                                                                        {}, field,       workspace_, cell_m} {
         size_t vertices = 0;
         uint32_t triangles = 0;
         for (const Chunk& c : mesh_.chunks) {
             firstTriangle_.push_back(triangles);
             vertices += c.positions.size(), triangles += static_cast<uint32_t>(c.triangles.size());
         }
+        if (progress_) progress_->begin("tips", 5 * mesh_.chunks.size());  // as many passes at most
         positions_.resize(vertices), normals_.resize(vertices), isConfined_.resize(vertices);
         inChunks([&](size_t c) {
             const Chunk& chunk = mesh_.chunks[c];
@@ -62,13 +64,15 @@ public:
         surface_.positions = positions_;
     }
 
+    /// What completes tips. After cancelling some of it, or none.
     std::vector<TipFan> find() {
-        findCandidates();
+        if (!cancelled(progress_)) findCandidates();
         if (candidates_.empty()) return {};
         listTriangles();
         std::vector<TipFan> fans;
         std::vector<bool> isTaken(positions_.size());
         for (const Candidate& at : candidates_) {
+            if (cancelled(progress_)) return {};
             if (isTaken[at.vertex]) continue;
             auto fan = fanAt(surface_, at.vertex, at.apex);
             if (!fan) continue;
@@ -87,7 +91,10 @@ private:
     /// Calls `work` with the number of every chunk.
     template <class Work>
     void inChunks(Work&& work) const {
-        parallelFor(mesh_.chunks.size(), threads_, nullptr, [&](size_t c, int) { work(c); });
+        parallelFor(mesh_.chunks.size(), threads_, progress_, [&](size_t c, int) {
+            work(c);
+            tick(progress_);
+        });
     }
 
     /// Calls `visit` with every triangle of a chunk of which wants(corners in the mesh) says so.
@@ -126,7 +133,7 @@ private:
     std::vector<TipTriangle> trianglesIn(const BoxFinder& finder) const {
         return trianglesThat([&](const Triangle& corners) {
             std::vector<uint32_t> found;
-            finder.find(boxOf(corners), found);
+            finder.find(boxOf(positions_, corners), found);
             return !found.empty();
         });
     }
@@ -169,6 +176,7 @@ private:
                     if ((corners.x | corners.y | corners.z) & ghostBit) borrowing[c].push_back(t);
                 });
         });
+        if (cancelled(progress_)) return {};
         for (size_t c = 0; c < borrowing.size(); ++c)
             for (const TipTriangle& t : borrowing[c]) add(mesh_.chunks[c], t, false);
         return sums;
@@ -184,9 +192,7 @@ private:
             wide.push_back({v, {}, {}, 0, noLabel});
         }
         if (wide.empty()) return wide;
-        const auto isWide = [&](const Triangle& t) {
-            return place[t.x] != none || place[t.y] != none || place[t.z] != none;
-        };
+        const auto isWide = [&](const Triangle& t) { return std::min({place[t.x], place[t.y], place[t.z]}) != none; };
         for (const TipTriangle& t : trianglesThat(isWide))
             for (int k = 0; k < 3; ++k) {
                 if (place[t.corners[k]] == none) continue;
@@ -217,7 +223,7 @@ private:
         const BoxFinder finder(boxes);
         std::vector<uint32_t> found;
         for (const TipTriangle& t : trianglesIn(finder)) {
-            finder.find(boxOf(t.corners), found);
+            finder.find(boxOf(positions_, t.corners), found);
             for (const uint32_t i : found)
                 for (size_t k = 0; k < 3; ++k) addPlane(t, k, vertices[i]);
         }
@@ -350,11 +356,11 @@ private:
         std::vector<std::vector<uint32_t>> near(fans.size());
         std::vector<uint32_t> found;
         for (uint32_t t = 0; t < triangles_.size(); ++t) {
-            finder.find(boxOf(triangles_[t].corners), found);
+            finder.find(boxOf(positions_, triangles_[t].corners), found);
             for (const uint32_t i : found) near[i].push_back(t);
         }
         size_t kept = 0;
-        for (size_t i = 0; i < fans.size(); ++i) {
+        for (size_t i = 0; i < fans.size() && !cancelled(progress_); ++i) {
             const auto meets = [&](const Box3f& box) { return !intersection(box, boxes[i]).empty(); };
             const auto end = boxes.begin() + static_cast<ptrdiff_t>(kept);
             if (std::any_of(boxes.begin(), end, meets) || crosses(surface_, fans[i], near[i])) continue;
@@ -367,12 +373,10 @@ private:
     static Box3f cubeAround(Vec3f middle, double reach_m) {
         return Box3f{middle, middle}.inflated(static_cast<float>(reach_m));
     }
-    Box3f boxOf(const Triangle& t) const {
-        return hull(hull(Box3f{positions_[t.x], positions_[t.x]}, positions_[t.y]), positions_[t.z]);
-    }
 
     const Mesh& mesh_;
     const int threads_;
+    Progress* const progress_;
     eval::Workspace workspace_;
     std::vector<uint32_t> firstTriangle_;    ///< by chunk
     PageVector<Vec3f> positions_, normals_;  ///< by vertex of the whole mesh
@@ -385,9 +389,10 @@ private:
 
 }  // namespace
 
-size_t completeTips(Mesh& mesh, const eval::Tape& field, float cell_m, int threads) {
-    if (mesh.hasPositionsOnly()) return 0;
-    const std::vector<TipFan> fans = Tips(mesh, field, static_cast<double>(cell_m), threads).find();
+Result<size_t> completeTips(Mesh& mesh, const eval::Tape& field, float cell_m, int threads, Progress* progress) {
+    if (mesh.hasPositionsOnly()) return size_t{0};
+    const std::vector<TipFan> fans = Tips(mesh, field, static_cast<double>(cell_m), threads, progress).find();
+    if (cancelled(progress)) return cancelledError();
     if (!fans.empty()) mesh = withFans(mesh, fans);
     return fans.size();
 }

@@ -12,7 +12,7 @@ Result<Mesh> simplify(const Mesh&, const SimplifyOptions&, Progress*) {
     return missingPackage(Package::Cgal, "simplification");
 }
 
-size_t completeTips(Mesh&, const eval::Tape&, float, int) { return 0; }
+Result<size_t> completeTips(Mesh&, const eval::Tape&, float, int, Progress*) { return size_t{0}; }
 
 Result<Mesh> simplifyToShare(const Mesh&, double, int, Progress*) {
     return missingPackage(Package::Cgal, "simplification");

@@ -83,5 +83,24 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
+TEST(Edits, CanBeCancelledWhileTipsAreSought) {
+    syntax::Diagnostics problems;
+    const auto grammar = load("tip.sgm", "grammar 2\nstart A -> cone size (1.5m, 8m, 1.5m)\n", problems);
+    ASSERT_TRUE(grammar);
+    Progress progress;
+    Context context{&progress, 2};
+    const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
+    ASSERT_TRUE(model.ok());
+    const mesh::Grid grid = gridOf(*model, 64);
+    auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
+    ASSERT_TRUE(meshed.ok());
+    progress.cancel();
+    const auto mesh = edited(std::move(meshed->mesh), {.tolerance_m = 0.0},
+                             {model->tape, mesh::Surface::Crisp, grid.cell_m}, context);
+    ASSERT_FALSE(mesh.ok());
+    EXPECT_EQ(mesh.error().kind, Error::Kind::Cancelled);
+    EXPECT_STREQ(progress.stage(), "tips");
+}
+
 }  // namespace
 }  // namespace sgm::pipeline
