@@ -1,5 +1,7 @@
 #include "modeler/mesh/fanned_mesh.h"
 
+#include <unordered_set>
+
 namespace sgm::mesh {
 namespace {
 
@@ -12,11 +14,14 @@ public:
         chunk_.triangles.reserve(triangles), chunk_.origins.reserve(triangles), chunk_.labels.reserve(triangles);
         for (const Chunk& c : mesh.chunks) addArrays(c);
         fans_.resize(chunk_.triangles.size(), nullptr), isRemoved_.resize(chunk_.triangles.size());
+        std::unordered_set<uint32_t> tops;
         for (const TipFan& fan : fans) {
+            tops.insert(fan.top);
             for (const uint32_t t : fan.removed) isRemoved_[t] = true;
             for (const TipTriangle& t : fan.triangles) fans_[t.number] = &t;
             chunk_.positions[fan.top] = fan.apex;
         }
+        std::erase_if(chunk_.confined, [&](const ConfinedVertex& v) { return tops.contains(v.vertex); });
     }
 
     Mesh make() {

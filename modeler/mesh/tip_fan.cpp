@@ -35,8 +35,9 @@ public:
     FanBuilder(const TipSurface& surface, uint32_t vertex, Vec3d apex)
         : surface_(surface), vertex_(vertex), guess_(apex) {}
 
-    /// What is cut off at so many times the depth of the highest vertex; see `fanAt`.
-    std::optional<TipFan> fan(double cut) {
+    /// What is cut off at so many times the depth of the highest vertex; see `fanAt`. Unless `takesConfined`, nothing
+    /// where the border goes through a confined vertex.
+    std::optional<TipFan> fan(double cut, bool takesConfined) {
         top_ = vertex_, apex_ = guess_;
         axis_ = normalized(apex_ - at(top_));
         double within_m = apexSlack * surface_.cell_m;
@@ -45,20 +46,17 @@ public:
             if (!gather(cut * depthOf(top_)) || isTooNear()) return {};
             const auto meeting = meetingOf(within_m);
             if (!meeting || meeting->error > within_m) return {};
-            agrees_ = true;
             apex_ = meeting->point;
             axis_ = normalized(apex_ - middle());
             within_m = std::clamp(meeting->error, apexRounding * surface_.cell_m, onSurface * surface_.cell_m);
         }
         if (!isApex()) return {};
         TipFan made{top_, apex_.as<float>(), {}, {}};
-        if (!fillFrom(made) || !isOneLoop(made) || !liesOnSurface(made) || crosses(surface_, made, beside(made)))
+        if (!fillFrom(made, takesConfined) || !isOneLoop(made) || !liesOnSurface(made) ||
+            crosses(surface_, made, beside(made)))
             return {};
         return made;
     }
-
-    /// Whether the planes agreed on an apex once, so that another cut may find it.
-    bool agrees() const { return agrees_; }
 
 private:
     Vec3d at(uint32_t vertex) const { return surface_.positions[vertex].as<double>(); }
@@ -145,8 +143,8 @@ private:
         return std::abs(values[0]) < onSurface * surface_.cell_m && values[1] * values[2] < 0;
     }
 
-    /// The triangles that go and those of the fan; false where one of these has a confined vertex.
-    bool fillFrom(TipFan& made) const {
+    /// The triangles that go and those of the fan; false where one of these has a confined vertex that isn't taken.
+    bool fillFrom(TipFan& made, bool takesConfined) const {
         made.removed = triangles_;
         for (const uint32_t number : triangles_) {
             const TipTriangle& t = surface_.triangles[number];
@@ -155,7 +153,7 @@ private:
             while (!cutOff_.contains(t.corners[static_cast<int>(k)])) ++k;
             const size_t b = (k + 1) % 3, c = (k + 2) % 3;
             for (const size_t corner : {b, c})
-                if (surface_.isConfined[t.corners[static_cast<int>(corner)]]) return false;
+                if (!takesConfined && surface_.isConfined[t.corners[static_cast<int>(corner)]]) return false;
             TipTriangle fan = t;
             fan.corners[static_cast<int>(k)] = made.top;
             fan.normals[k] = normalized(t.normals[b] + t.normals[c]);
@@ -210,7 +208,6 @@ private:
     const TipSurface& surface_;
     const uint32_t vertex_;
     const Vec3d guess_;
-    bool agrees_ = false;
     uint32_t top_ = 0;
     Vec3d apex_, axis_;
     std::unordered_set<uint32_t> cutOff_;  ///< vertices
@@ -238,8 +235,9 @@ std::vector<float> valuesAt(const TipSurface& surface, std::span<const Vec3f> po
 
 std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d apex) {
     FanBuilder builder(surface, vertex, apex);
-    for (const double cut : cuts)
-        if (auto fan = builder.fan(cut); fan || !builder.agrees()) return fan;
+    for (const bool takesConfined : {false, true})
+        for (const double cut : cuts)
+            if (auto fan = builder.fan(cut, takesConfined)) return fan;
     return {};
 }
 

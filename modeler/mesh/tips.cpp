@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <map>
 
 #include "modeler/core/parallel.h"
 #include "modeler/mesh/box_finder.h"
@@ -17,10 +17,11 @@ constexpr Label noLabel = 0xffffffffu;
 /// The mean of the normals around a tip is shorter: as of smooth cones within 45° of their axis, and as of pyramids
 /// within 30°, for along edges of 90° it is .7 or more.
 constexpr float widestSmooth = 0.85f, widestCreased = 0.7f;
-constexpr size_t mostOfPart = 64;  ///< candidates: a part with more is a fractal or rough
+constexpr size_t mostOfPart = 64;  ///< candidates, and as many within a cell: a part with more is a fractal or rough
 constexpr double nearer = 0.25;    ///< of the way from a vertex to its apex: no other vertex is as near to that
 // In cells:
 constexpr double nearestApex = 0.05, farthestApex = 16;  ///< from the vertex below it
+constexpr double nearestCorner = 0.2;                    ///< the same where creases meet
 constexpr double coneSlack = 0.002;                      ///< an apex from the planes around it, without creases
 constexpr double around = 3;                             ///< where planes are looked for
 
@@ -243,10 +244,8 @@ private:
                 candidates_.push_back(c);
         }
         addPlanesAround(creased);
-        const std::vector<Candidate> more = candidatesOf(creased);
-        candidates_.insert(candidates_.end(), more.begin(), more.end());
-        const std::vector<bool> isReached = reachedApexes();
-        keep(candidates_, [&](size_t i) { return !isReached[i]; });
+        for (const Candidate& c : candidatesOf(creased)) candidates_.push_back(c);
+        keep(candidates_, [isReached = reachedApexes()](size_t i) { return !isReached[i]; });
         keepNearest();
     }
 
@@ -270,23 +269,23 @@ private:
     std::vector<Candidate> candidatesOf(std::span<const WideVertex> vertices) {
         std::vector<Candidate> found;
         std::vector<Vec3f> apexes;
-        std::unordered_map<OriginId, size_t> counts;
+        std::map<std::pair<OriginId, bool>, size_t> counts;
+        const double cell = surface_.cell_m;
+        const auto countOf = [&](const Candidate& c) -> size_t& { return counts[{c.origin, wayOf(c) < cell}]; };
         for (const WideVertex& at : vertices) {
             const auto meeting = at.planes.meeting();
-            const double slack = at.hasCreases ? apexSlack : coneSlack;
-            if (!meeting || meeting->error > slack * surface_.cell_m) continue;
+            const auto [slack, nearest] =
+                at.hasCreases ? std::pair(apexSlack, nearestCorner) : std::pair(coneSlack, nearestApex);
+            if (!meeting || meeting->error > slack * cell) continue;
             const double way = length(meeting->point);
-            // Corners of creases within a cell are where they should be.
-            const double nearest = at.hasCreases ? 1 : nearestApex;
-            if (!(way > nearest * surface_.cell_m && way < farthestApex * surface_.cell_m)) continue;
+            if (!(way > nearest * cell && way < farthestApex * cell)) continue;
             found.push_back({at.vertex, at.origin, positions_[at.vertex].as<double>() + meeting->point});
             apexes.push_back(found.back().apex.as<float>());
-            ++counts[at.origin];
+            ++countOf(found.back());
         }
         const std::vector<float> values = valuesAt(surface_, apexes);
-        keep(found, [&](size_t i) {
-            return counts[found[i].origin] <= mostOfPart && std::abs(values[i]) < apexSlack * surface_.cell_m;
-        });
+        keep(found,
+             [&](size_t i) { return countOf(found[i]) <= mostOfPart && std::abs(values[i]) < apexSlack * cell; });
         return found;
     }
 

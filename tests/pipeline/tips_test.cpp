@@ -83,6 +83,26 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
+TEST(CompleteTips, StayWhereTheirVertexWasConfined) {
+    syntax::Diagnostics problems;
+    const auto grammar = load("tip.sgm",
+                              "grammar 2\nterminal cover\n"
+                              "start A -> cube size (16m, .5m, 16m) + size (1.5m, 1m, 1.5m) turn (0deg, 18.08deg, 0deg) "
+                              "move (0.3997m, .25m, -0.4819m) footprint ngon(6, 0.75m) hipRoof(70deg) of cover\n",
+                              problems);
+    ASSERT_TRUE(grammar);
+    Context context{nullptr, 2};
+    const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
+    ASSERT_TRUE(model.ok());
+    const mesh::Grid grid = gridOf(*model, 160);
+    auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
+    ASSERT_TRUE(meshed.ok());
+    const auto mesh = edited(std::move(meshed->mesh), {.tolerance_m = 1e-3},
+                             {model->tape, mesh::Surface::Crisp, grid.cell_m}, context);
+    ASSERT_TRUE(mesh.ok());
+    EXPECT_LT(distanceTo(*mesh, {0.3997, 1.13959, -0.4819}), 1e-4);
+}
+
 TEST(Edits, CanBeCancelledWhileTipsAreSought) {
     syntax::Diagnostics problems;
     const auto grammar = load("tip.sgm", "grammar 2\nstart A -> cone size (1.5m, 8m, 1.5m)\n", problems);
