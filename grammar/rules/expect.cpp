@@ -84,6 +84,8 @@ bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_vi
         hint = "leave the quotes out";
     if (want == Want::Count && value.type.like.kind == Value::Kind::Number && value.type.like.units[0] == Unit::None)
         hint = followsTwoDots(value.expr.span) ? "a range has two dots, as in '1..3'" : "write 'round(…)' around it";
+    if (want == Want::Number && value.type.numeric() && value.type.like.kind == Value::Kind::Number)
+        hint = "write a number without a unit, or divide by one of the same unit";
     const std::string got = want == Want::Count && !hint.empty() ? "may have a fraction" : "is " + describe(value.type);
     ctx.diagnostics.error(value.expr.span, fmt::format("{} takes {}, but this {}", what, describe(want), got),
                           std::move(hint));

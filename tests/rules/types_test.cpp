@@ -83,6 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"+ cube color rgb(.1, .2, .3) at +x", ""},
         Case{"+ cube rough 1.5 at +x", "'rough' is 1.5, but must be 0 … 1"}, Case{"+ torus(.2) at +x", ""},
         Case{"+ torus(tube: 20%) at +x", ""}, Case{"+ torus(ring: .2) at +x", "'torus' has no parameter 'ring'"},
+        Case{"+ cube at +x overlap 1m", "'overlap' takes a plain number, but this is a length"},
+        Case{"+ cube size split.index", "unknown name 'split'"},
         Case{"+ torus(2m) at +x", "'tube' of 'torus' takes a plain number, but this is a length"},
         Case{"+ cube(1) at +x", "'cube' takes no parameters"},
         Case{"+ morph(cube, sphere) at +x", "'morph' takes two solids and a share, but 2 are given"},

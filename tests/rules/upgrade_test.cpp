@@ -86,7 +86,9 @@ TEST(Upgrade, IsWarnedOfOnceAFile) {
     const std::string rest = "start A -> cube size 1m move (2m, 0, 0) + sphere size 50%, cube size 2m + cube at +x\n";
     EXPECT_EQ(warned("grammar 1\n" + rest),
               std::vector<std::string>{"'grammar 2' reads this in another way, and 1 more place"});
-    EXPECT_EQ(warned("grammar 2\n" + rest), std::vector<std::string>{"a share of what? A start's own scope is 1m"});
+    EXPECT_EQ(warned("grammar 2\n" + rest),
+              (std::vector<std::string>{"a share of what? A start's own scope is 1m",
+                                        "'cube' has no size, and a start's own scope is 1m"}));
     EXPECT_EQ(warned("grammar 1\nstart A -> cube size 2m + cube size 1m at +x\n").size(), 0u);
 }
 
