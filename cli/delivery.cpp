@@ -10,6 +10,7 @@
 #include "cli/report.h"
 #include "cli/validation.h"
 #include "grammar/lower/objects.h"
+#include "grammar/pipeline/buried.h"
 #include "grammar/pipeline/files.h"
 #include "grammar/pipeline/floating.h"
 #include "grammar/pipeline/gaps.h"
@@ -23,6 +24,7 @@ namespace {
 /// What is known of a build when it is done.
 struct Figures {
     std::vector<lower::ThinPart> missing;
+    std::vector<pipeline::MeshWarning> buried;
     mesh::MeshFigures mesh;  ///< of the solid, before it is turned inside out
     Support support;
     std::optional<volume::Cave> cave;
@@ -114,6 +116,7 @@ void printSummary(const BuildRequest& request, const Model& model, const pipelin
     for (const std::string& note : products.colliders.notes) printMessage("note: collider: {}\n", note);
     printMeshWarnings(pipeline::floatingWarnings(model, figures.support, grid.cell_m));
     fmt::print("{}", levelTable(products.levels, products.mesh.triangleCount()));
+    printMeshWarnings(figures.buried);
     printMeshWarnings(pipeline::missingWarnings(model, grid, figures.missing));
     if (figures.cave && request.cave) fmt::print("{}", caveTable(*figures.cave));
 }
@@ -155,6 +158,10 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
         });
         if (!found.ok()) return found.error();
         figures.missing = std::move(*found);
+        auto buried =
+            context.timed("buried parts", [&] { return pipeline::buriedWarnings(model, meshed.mesh, context); });
+        if (!buried.ok()) return buried.error();
+        figures.buried = std::move(*buried);
     }
     auto mesh = editMesh(request, model, meshed, scene, context);
     if (!mesh.ok()) return mesh.error();

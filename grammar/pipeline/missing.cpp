@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "grammar/pipeline/buried.h"
 #include "grammar/pipeline/gaps.h"
 
 namespace sgm::pipeline {
@@ -82,7 +83,10 @@ Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const mesh::Me
     Support support = supportOf(model, mesh, grid.cell_m);
     if (const Status s = findCauses(model, mesh, grid.cell_m, *missing, support, context.progress); !s.ok())
         return s.error();
+    auto buried = buriedWarnings(model, mesh, context);
+    if (!buried.ok()) return buried;
     std::vector<MeshWarning> warnings = floatingWarnings(model, support, grid.cell_m);
+    for (MeshWarning& hidden : *buried) warnings.push_back(std::move(hidden));
     for (MeshWarning& thin : missingWarnings(model, grid, *missing)) warnings.push_back(std::move(thin));
     return warnings;
 }

@@ -19,7 +19,7 @@ Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const 
 std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
                                          const std::vector<lower::ThinPart>& missing, const std::string& object = {});
 
-/// Looks at a mesh as it comes from makeMesh for what floats, why, and for what is too thin to be in it: what every
+/// Looks at a mesh as it comes from makeMesh for what floats, why, for what is buried and what is too thin: what every
 /// command and the window tell alike. Error::Cancelled.
 Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const mesh::Mesh& mesh, const mesh::Grid& grid,
                                               Context& context);

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "grammar/pipeline/buried.h"
 #include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/missing.h"
@@ -170,6 +171,9 @@ Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest&
                                                      cell_m, context.threads, context.progress);
         if (!missing.ok()) return missing.error();
         lacks = missingWarnings(*model, grid, *missing, name);
+        auto buried = buriedWarnings(*model, meshed->mesh, context);
+        if (!buried.ok()) return buried.error();
+        for (MeshWarning& hidden : *buried) lacks.push_back(std::move(hidden));
     }
     mesh::keepOnly(meshed->mesh, request.edits.keep, cell_m, context.threads);
     auto mesh = edited(std::move(meshed->mesh), request.edits, {model->tape, request.meshing.surface, cell_m}, context);

@@ -1,0 +1,132 @@
+#include "grammar/lower/buried_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <tuple>
+
+#include "grammar/derive/lift.h"
+#include "modeler/eval/evaluate.h"
+
+namespace sgm::lower {
+namespace {
+
+constexpr size_t mostAsked = 12;    ///< parts of a place
+constexpr size_t mostPlaces = 200;  ///< that are asked, the first ones
+constexpr int latticeEdge = 9;      ///< points along each axis of a scope; odd, so that its middle lines are met
+constexpr double latticeReach = 0.98;
+constexpr size_t batch = 64;
+
+/// What one place of the grammar made.
+struct Place {
+    std::vector<OriginId> parts;
+    bool isSeen = false;
+};
+
+/// Whether a shape adds its solid to what stands, sharply, and so do all shapes above it; and nothing that follows them
+/// blends or morphs what stands.
+bool isAdded(const derive::ShapeTree& tree, derive::ShapeId shape) {
+    // A shape's own solid comes before its children.
+    derive::ShapeId next = tree.shapes[shape].firstChild;
+    for (; shape != derive::none; next = tree.shapes[shape].nextSibling, shape = tree.shapes[shape].parent) {
+        const rules::Operator op = tree.shapes[shape].op;
+        if ((op != rules::Operator::None && op != rules::Operator::Sum) || tree.shapes[shape].blend_m > 0) return false;
+        for (; next != derive::none; next = tree.shapes[next].nextSibling)
+            if (tree.shapes[next].op == rules::Operator::Morph || tree.shapes[next].blend_m > 0) return false;
+    }
+    return true;
+}
+
+/// Whether the field at points of each scope belongs to its part.
+class Lattice {
+public:
+    explicit Lattice(const eval::Tape& tape) : tape_(tape) {}
+
+    /// Whether one of at most `batch` parts owns a point of its scope.
+    bool anyOwns(std::span<const OriginId> parts, std::span<const derive::Scope> scopes) {
+        std::vector<Box3f> boxes;
+        for (const derive::Scope& scope : scopes) {
+            Box3f box;
+            for (int corner = 0; corner < 8; ++corner)
+                box = hull(box, scope.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0})
+                                    .as<float>());
+            boxes.push_back(box);
+        }
+        std::array<eval::FloatInterval, batch> ranges;
+        const eval::RangeTrace trace =
+            eval::evaluateRanges(tape_, {boxes.data(), boxes.size()}, ranges.data(), workspace_);
+        for (size_t i = 0; i < parts.size(); ++i) {
+            eval::shorten(tape_, trace, i, workspace_, local_);
+            if (owns(parts[i], scopes[i])) return true;
+        }
+        return false;
+    }
+
+private:
+    bool owns(OriginId part, const derive::Scope& scope) {
+        std::vector<float> x, y, z;
+        const auto share = [](int i) { return latticeReach * (2.0 * i / (latticeEdge - 1) - 1); };
+        for (int k = 0; k < latticeEdge; ++k)
+            for (int j = 0; j < latticeEdge; ++j)
+                for (int i = 0; i < latticeEdge; ++i) {
+                    const Vec3f p = scope.point({share(i), share(j), share(k)}).as<float>();
+                    x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
+                }
+        std::vector<OriginId> owners(x.size());
+        eval::evaluateOrigin(local_, {x.data(), y.data(), z.data(), x.size()}, owners.data(), workspace_);
+        return std::find(owners.begin(), owners.end(), part) != owners.end();
+    }
+
+    const eval::Tape& tape_;
+    eval::Tape local_;
+    eval::Workspace workspace_;
+};
+
+/// Which parts the mesh shows, by part.
+std::vector<bool> seenParts(const mesh::Mesh& mesh, size_t count) {
+    std::vector<bool> seen(count);
+    for (const mesh::Chunk& chunk : mesh.chunks)
+        for (const OriginId origin : chunk.origins) seen[origin] = true;
+    return seen;
+}
+
+}  // namespace
+
+Result<std::vector<BuriedParts>> findBuriedParts(const derive::Derivation& derivation, const Model& model,
+                                                 const eval::Tape& tape, const mesh::Mesh& mesh, Progress* progress) {
+    if (mesh.hasPositionsOnly() || mesh.triangleCount() == 0) return std::vector<BuriedParts>{};
+    const derive::ShapeTree& tree = derivation.tree;
+    const std::vector<bool> seen = seenParts(mesh, model.shapeOf.size());
+    std::map<std::tuple<const syntax::Source*, size_t, size_t>, Place> places;
+    for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
+        if (model.shapeOf[part] == derive::none) continue;
+        const derive::Shape shape = tree.shapes[model.shapeOf[part]];
+        if (shape.solid == derive::none || !shape.span.source) continue;
+        Place& place = places[{shape.span.source, shape.span.begin, shape.span.end}];
+        place.isSeen = place.isSeen || seen[part];
+        if (!place.isSeen) place.parts.push_back(part);
+    }
+    std::vector<Place> hidden;
+    for (auto& [where, place] : places)
+        if (!place.isSeen) hidden.push_back(std::move(place));
+    std::sort(hidden.begin(), hidden.end(), [](const Place& a, const Place& b) { return a.parts[0] < b.parts[0]; });
+    hidden.resize(std::min(hidden.size(), mostPlaces));
+    Lattice lattice(tape);
+    std::vector<BuriedParts> found;
+    for (const Place& place : hidden) {
+        if (cancelled(progress)) return cancelledError();
+        std::vector<OriginId> some;
+        std::vector<derive::Scope> scopes;
+        const size_t count = std::min(mostAsked, place.parts.size());
+        for (size_t i = 0; i < count; ++i) {
+            some.push_back(place.parts[i * place.parts.size() / count]);
+            scopes.push_back(derive::liftedScope(derivation, model.shapeOf[some.back()]));
+        }
+        const auto isAddedHere = [&](OriginId part) { return isAdded(tree, model.shapeOf[part]); };
+        if (std::all_of(some.begin(), some.end(), isAddedHere) && !lattice.anyOwns(some, scopes))
+            found.push_back({place.parts.front(), place.parts.size()});
+    }
+    return found;
+}
+
+}  // namespace sgm::lower

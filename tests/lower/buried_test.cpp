@@ -1,0 +1,61 @@
+// Parts that lie within others wherever they are.
+#include <string>
+#include <vector>
+
+#include "grammar/lower/buried_parts.h"
+#include "modeler/mesh/polygonize.h"
+#include "modeler/mesh/subdivide.h"
+#include "tests/lower/lost_parts.h"
+
+namespace sgm {
+namespace {
+
+using namespace testing_;
+
+/// Symbol and number of parts of each place that is buried.
+std::vector<std::string> buriedIn(const std::string& body) {
+    const Lowered model("grammar 2\n" + body);
+    const float cell_m = mesh::cellFor(model.model->field.bounds, 48);
+    const mesh::Grid grid = mesh::gridFor(model.model->field.bounds, cell_m);
+    mesh::Counts counts;
+    const auto blocks = mesh::subdivide(model.tape(), grid, 2, nullptr, counts);
+    const auto mesh = mesh::polygonize(*blocks, grid, {.surface = mesh::Surface::Crisp, .threads = 2}, nullptr, counts);
+    const auto found = lower::findBuriedParts(model.derivation, *model.model, model.tape(), *mesh, nullptr);
+    EXPECT_TRUE(found.ok());
+    std::vector<std::string> names;
+    for (const lower::BuriedParts& b : *found)
+        names.push_back(model.model->provenance.parts[b.first].symbol() + " " + std::to_string(b.count));
+    return names;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(BuriedParts, AreThoseWithinOneOther) {
+    EXPECT_EQ(buriedIn("start A -> cube size 4 + sphere size 2"), Names{"sphere 1"});
+    EXPECT_EQ(buriedIn("start A -> cube size 4, sphere size 2, sphere size .2 move (1m, 0, 0)"),
+              (Names{"sphere 1", "sphere 1"}));
+    EXPECT_EQ(buriedIn("start A -> cube size 4 + B size 1\nrule B -> for k in 0..3 { cone move (.3m * k, 0, 0) }"),
+              Names{"cone 4"});
+}
+
+TEST(BuriedParts, AreNoneThatShowSomewhere) {
+    EXPECT_EQ(buriedIn("start A -> cube size 4 + sphere size 2 move (1.2m, 0, 0)"), Names{});
+    EXPECT_EQ(buriedIn("start A -> cube size 4 + B size 1\nrule B -> for k in 0..3 { cone move (.7m * k, 0, 0) }"),
+              Names{})
+        << "the last one shows";
+    EXPECT_EQ(buriedIn("start A -> cube size 4 + cylinder size .05 move (0, 2m, 0)"), Names{})
+        << "thinner than a cell, but it stands out";
+}
+
+TEST(BuriedParts, AreNoCoresCuttersAndBlends) {
+    EXPECT_EQ(
+        buriedIn("start A -> size 4 B\nrule B -> faces .4m { side: cube | top: cube | bottom: cube | rest: cube }"),
+        Names{})
+        << "the core fills what would be hollow";
+    EXPECT_EQ(buriedIn("start A -> cube size 4 - sphere size 2"), Names{}) << "a hollow";
+    EXPECT_EQ(buriedIn("start A -> cube size 4 + sphere size 2 blend .5m"), Names{});
+    EXPECT_EQ(buriedIn("start A -> cube size 4 + sphere size 2 morph cube by .5"), Names{});
+}
+
+}  // namespace
+}  // namespace sgm
