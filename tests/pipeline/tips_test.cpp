@@ -85,11 +85,12 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(CompleteTips, StayWhereTheirVertexWasConfined) {
     syntax::Diagnostics problems;
-    const auto grammar = load("tip.sgm",
-                              "grammar 2\nterminal cover\n"
-                              "start A -> cube size (16m, .5m, 16m) + size (1.5m, 1m, 1.5m) turn (0deg, 18.08deg, 0deg) "
-                              "move (0.3997m, .25m, -0.4819m) footprint ngon(6, 0.75m) hipRoof(70deg) of cover\n",
-                              problems);
+    const auto grammar =
+        load("tip.sgm",
+             "grammar 2\nterminal cover\n"
+             "start A -> cube size (16m, .5m, 16m) + size (1.5m, 1m, 1.5m) turn (0deg, 18.08deg, 0deg) "
+             "move (0.3997m, .25m, -0.4819m) footprint ngon(6, 0.75m) hipRoof(70deg) of cover\n",
+             problems);
     ASSERT_TRUE(grammar);
     Context context{nullptr, 2};
     const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
