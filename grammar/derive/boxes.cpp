@@ -10,6 +10,11 @@ double reach(const Scope& s, Vec3d axis) {
            std::abs(dot(s.axes.z, axis)) * h.z;
 }
 
+Box3d boxOf(const Scope& s, double share) {
+    const Vec3d r = Vec3d{reach(s, {1, 0, 0}), reach(s, {0, 1, 0}), reach(s, {0, 0, 1})} * share;
+    return {s.centre - r, s.centre + r};
+}
+
 namespace {
 
 bool isUpright(const Scope& s) { return s.axes == Mat3{}; }
@@ -40,11 +45,9 @@ std::vector<Boxed> solidsInOrder(const ShapeTree& tree, int& axis) {
     Vec3d sizes;
     for (ShapeId s = 0; s < tree.shapes.size(); ++s) {
         if (tree.shapes[s].solid == none) continue;
-        const Scope& scope = tree.shapes[s].scope;
-        const Vec3d r{reach(scope, {1, 0, 0}), reach(scope, {0, 1, 0}), reach(scope, {0, 0, 1})};
-        boxes.push_back({{scope.centre - r, scope.centre + r}, s});
+        boxes.push_back({boxOf(tree.shapes[s].scope), s});
         all = hull(all, boxes.back().box);
-        sizes += r;
+        sizes += boxes.back().box.size();
     }
     axis = 0;
     for (int i = 1; i < 3; ++i)

@@ -14,6 +14,8 @@ inline constexpr double boxSlack_m = 1e-4;
 
 /// Half the box's extent along a unit axis, metres.
 double reach(const Scope& scope, Vec3d axis);
+/// What `share` times the box takes up along x, y and z about its middle, metres.
+Box3d boxOf(const Scope& scope, double share = 1);
 /// The depth by which two oriented boxes overlap (separating axes), metres; negative when they are apart.
 double penetration(const Scope& a, const Scope& b);
 

@@ -13,11 +13,6 @@ namespace {
 
 constexpr double touch_m = 1e-3;
 
-Box3d boxOf(const Scope& scope) {
-    const Vec3d r{reach(scope, {1, 0, 0}), reach(scope, {0, 1, 0}), reach(scope, {0, 0, 1})};
-    return {scope.centre - r, scope.centre + r};
-}
-
 bool isUpright(const Scope& scope) { return scope.axes.y.y > 1 - 1e-9; }
 
 bool standsIn(const ShapeTree& tree, ShapeId inner, ShapeId outer) {

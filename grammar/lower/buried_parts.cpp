@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
 #include "modeler/eval/evaluate.h"
 
@@ -45,13 +46,7 @@ public:
     /// Whether one of at most `batch` parts owns a point of its scope.
     bool anyOwns(std::span<const OriginId> parts, std::span<const derive::Scope> scopes) {
         std::vector<Box3f> boxes;
-        for (const derive::Scope& scope : scopes) {
-            Box3f box;
-            for (int corner = 0; corner < 8; ++corner)
-                box = hull(box, scope.point({corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0})
-                                    .as<float>());
-            boxes.push_back(box);
-        }
+        for (const derive::Scope& scope : scopes) boxes.push_back(derive::boxOf(scope).as<float>());
         std::array<eval::FloatInterval, batch> ranges;
         const eval::RangeTrace trace =
             eval::evaluateRanges(tape_, {boxes.data(), boxes.size()}, ranges.data(), workspace_);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 
+#include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
 #include "grammar/lower/presence.h"
 #include "grammar/lower/scope_lines.h"
@@ -23,6 +24,7 @@ constexpr double leastMissingArea = 0.2;          ///< share of a plate's area, 
 constexpr double leaningWall = 1.42;              ///< cells that hold a wall of any plan or a shell are thinner by this
 constexpr size_t partsPerGroup = 64;              ///< of a parallel loop
 constexpr size_t partsPerTape = 8;                ///< that are shortened from one tape
+constexpr double probed = 1.1 * lineReach;        ///< of a scope: where its part is looked for
 
 /// Points as the evaluation takes them.
 struct Rows {
@@ -82,17 +84,6 @@ void measureFacing(const mesh::Mesh& mesh, std::span<Candidate> parts, size_t pa
         }
 }
 
-/// The box that a part is looked for in.
-Box3f boxOf(const derive::Scope& scope) {
-    Box3f box;
-    for (int corner = 0; corner < 8; ++corner)
-        box = hull(box, scope
-                            .point(Vec3d{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0} *
-                                   (1.1 * lineReach))
-                            .as<float>());
-    return box;
-}
-
 /// Orders parts so that halves of the list, and halves of these, lie beside each other. O(n log² n).
 void orderByPlace(std::span<Candidate> parts) {
     if (parts.size() <= partsPerTape) return;
@@ -140,13 +131,13 @@ private:
 
     static Box3f boxAround(std::span<const Candidate> parts) {
         Box3f box;
-        for (const Candidate& c : parts) box = hull(box, boxOf(*c.scope));
+        for (const Candidate& c : parts) box = hull(box, boxOf(*c.scope, probed).as<float>());
         return box;
     }
 
     void probeEach(std::span<Candidate> parts, const eval::Tape& tape) {
         std::array<Box3f, partsPerTape> boxes;
-        for (size_t i = 0; i < parts.size(); ++i) boxes[i] = boxOf(*parts[i].scope);
+        for (size_t i = 0; i < parts.size(); ++i) boxes[i] = boxOf(*parts[i].scope, probed).as<float>();
         shortenTo(tape, {boxes.data(), parts.size()}, each_);
         for (size_t i = 0; i < parts.size(); ++i)
             if (!each_[i].isEmpty) parts[i].missing = missing(parts[i], each_[i].tape);
