@@ -241,8 +241,9 @@ Solid checkNamedSolid(CheckContext& ctx, Place& place, const Written& e) {
     if (const field::Primitive* row = field::findPrimitive(e.text)) return checkPrimitive(ctx, place, e, *row);
     const auto symbol = ctx.names.symbols.find(e.text);
     if (symbol != ctx.names.symbols.end() && ctx.grammar.symbols[symbol->second].isMaterial) {
-        ctx.diagnostics.error(e.span, fmt::format("'{}' is a material, not a solid", e.text),
-                              fmt::format("write 'cube of {}' where the shape stands", e.text));
+        ctx.diagnostics.error(
+            e.span, fmt::format("'{}' is a material, not a solid", e.text),
+            fmt::format("write 'cube of {0}' where the shape stands, or 'block of {0}' over its plan", e.text));
         return nil;
     }
     if (symbol != ctx.names.symbols.end() && ctx.grammar.symbols[symbol->second].terminal) {

@@ -79,7 +79,7 @@ public:
             const Token symbol = cursor_.take();
             if (row->symbol != row->means)
                 cursor_.complain(cursor_.span(symbol), quoted(row->symbol) + " is no operator of an expression",
-                                 "write " + quoted(row->means));
+                                 "write " + quoted(row->means) + (row->symbol == "=" ? ", or 'name: …'" : ""));
             left = joined(*row, std::move(left), binary(row->binds + 1));
             const BinaryOperator* again = findBinary(cursor_.peekText());
             if (again && again->binds == row->binds && !chains(row->binds))
