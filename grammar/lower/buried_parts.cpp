@@ -12,16 +12,15 @@
 namespace sgm::lower {
 namespace {
 
-constexpr size_t mostAsked = 12;    ///< parts of a place
-constexpr size_t mostPlaces = 200;  ///< that are asked, the first ones
-constexpr int latticeEdge = 9;      ///< points along each axis of a scope; odd, so that its middle lines are met
-constexpr double latticeReach = 0.98;
-constexpr size_t batch = 64;
+constexpr size_t mostSampled = 12;     ///< parts of an element
+constexpr size_t mostElements = 200;   ///< that are sampled, the first ones
+constexpr int latticeEdge = 9;         ///< points along each axis of a scope; odd, so that its middle lines are met
+constexpr double latticeReach = 0.98;  ///< of a scope's half extent
 
-/// What one place of the grammar made.
-struct Place {
+/// What one element of a rule's body made.
+struct ElementParts {
     std::vector<OriginId> parts;
-    bool isSeen = false;
+    bool isVisible = false;
 };
 
 /// Whether a shape adds its solid to what stands, sharply, and so do all shapes above it; and nothing that follows them
@@ -43,11 +42,11 @@ class Lattice {
 public:
     explicit Lattice(const eval::Tape& tape) : tape_(tape) {}
 
-    /// Whether one of at most `batch` parts owns a point of its scope.
+    /// Whether one of at most `mostSampled` parts owns a point of its scope.
     bool anyOwns(std::span<const OriginId> parts, std::span<const derive::Scope> scopes) {
         std::vector<Box3f> boxes;
         for (const derive::Scope& scope : scopes) boxes.push_back(derive::boxOf(scope).as<float>());
-        std::array<eval::FloatInterval, batch> ranges;
+        std::array<eval::FloatInterval, mostSampled> ranges;
         const eval::RangeTrace trace =
             eval::evaluateRanges(tape_, {boxes.data(), boxes.size()}, ranges.data(), workspace_);
         for (size_t i = 0; i < parts.size(); ++i) {
@@ -78,11 +77,11 @@ private:
 };
 
 /// Which parts the mesh shows, by part.
-std::vector<bool> seenParts(const mesh::Mesh& mesh, size_t count) {
-    std::vector<bool> seen(count);
+std::vector<bool> visibleParts(const mesh::Mesh& mesh, size_t count) {
+    std::vector<bool> visible(count);
     for (const mesh::Chunk& chunk : mesh.chunks)
-        for (const OriginId origin : chunk.origins) seen[origin] = true;
-    return seen;
+        for (const OriginId origin : chunk.origins) visible[origin] = true;
+    return visible;
 }
 
 }  // namespace
@@ -91,35 +90,36 @@ Result<std::vector<BuriedParts>> findBuriedParts(const derive::Derivation& deriv
                                                  const eval::Tape& tape, const mesh::Mesh& mesh, Progress* progress) {
     if (mesh.hasPositionsOnly() || mesh.triangleCount() == 0) return std::vector<BuriedParts>{};
     const derive::ShapeTree& tree = derivation.tree;
-    const std::vector<bool> seen = seenParts(mesh, model.shapeOf.size());
-    std::map<std::tuple<const syntax::Source*, size_t, size_t>, Place> places;
+    const std::vector<bool> visible = visibleParts(mesh, model.shapeOf.size());
+    std::map<std::tuple<const syntax::Source*, size_t, size_t>, ElementParts> elements;
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         if (model.shapeOf[part] == derive::none) continue;
         const derive::Shape shape = tree.shapes[model.shapeOf[part]];
         if (shape.solid == derive::none || !shape.span.source) continue;
-        Place& place = places[{shape.span.source, shape.span.begin, shape.span.end}];
-        place.isSeen = place.isSeen || seen[part];
-        if (!place.isSeen) place.parts.push_back(part);
+        ElementParts& element = elements[{shape.span.source, shape.span.begin, shape.span.end}];
+        element.isVisible = element.isVisible || visible[part];
+        if (!element.isVisible) element.parts.push_back(part);
     }
-    std::vector<Place> hidden;
-    for (auto& [where, place] : places)
-        if (!place.isSeen) hidden.push_back(std::move(place));
-    std::sort(hidden.begin(), hidden.end(), [](const Place& a, const Place& b) { return a.parts[0] < b.parts[0]; });
-    hidden.resize(std::min(hidden.size(), mostPlaces));
+    std::vector<ElementParts> hidden;
+    for (auto& [span, element] : elements)
+        if (!element.isVisible) hidden.push_back(std::move(element));
+    std::sort(hidden.begin(), hidden.end(),
+              [](const ElementParts& a, const ElementParts& b) { return a.parts[0] < b.parts[0]; });
+    hidden.resize(std::min(hidden.size(), mostElements));
     Lattice lattice(tape);
     std::vector<BuriedParts> found;
-    for (const Place& place : hidden) {
+    for (const ElementParts& element : hidden) {
         if (cancelled(progress)) return cancelledError();
         std::vector<OriginId> some;
         std::vector<derive::Scope> scopes;
-        const size_t count = std::min(mostAsked, place.parts.size());
+        const size_t count = std::min(mostSampled, element.parts.size());
         for (size_t i = 0; i < count; ++i) {
-            some.push_back(place.parts[i * place.parts.size() / count]);
+            some.push_back(element.parts[i * element.parts.size() / count]);
             scopes.push_back(derive::liftedScope(derivation, model.shapeOf[some.back()]));
         }
         const auto isAddedHere = [&](OriginId part) { return isAdded(tree, model.shapeOf[part]); };
         if (std::all_of(some.begin(), some.end(), isAddedHere) && !lattice.anyOwns(some, scopes))
-            found.push_back({place.parts.front(), place.parts.size()});
+            found.push_back({element.parts.front(), element.parts.size()});
     }
     return found;
 }

@@ -1,5 +1,5 @@
-// Parts that add nothing: whatever a place of the grammar makes lies within other solids.
-// Enters: a derivation, its model and a mesh of it. Leaves: such places. Assumes a mesh with origins, before it is
+// Parts that add nothing: all that an element of a rule's body makes lies within other solids.
+// Enters: a derivation, its model and a mesh of it. Leaves: such elements. Assumes a mesh with origins, before it is
 // simplified.
 #pragma once
 
@@ -12,17 +12,17 @@
 
 namespace sgm::lower {
 
-/// The parts that one place of a grammar made, all of them buried.
+/// The parts that one element of a rule's body made, all of them buried.
 struct BuriedParts {
     OriginId first = 0;
     size_t count = 0;
 };
 
-/// Looks at the places whose parts have no triangle in the mesh and join others by `+` or ',' without a blend: does the
-/// field's surface belong to one of them anywhere on a lattice through its scope? Up to twelve parts of a place are
-/// asked. What fills the inside of a hollow block isn't buried, nor is what others bury only together. In the order of
-/// the parts; empty for a mesh without origins. O(parts), and 729 evaluations of a shortened tape a part that is asked.
-/// Error::Cancelled.
+/// Samples the elements whose parts have no triangle in the mesh and join others by `+` or ',' without a blend: one is
+/// buried when its parts own the field nowhere on a lattice through their scopes. Twelve parts of an element and the
+/// first 200 such elements are sampled at most. What fills the inside of a hollow block isn't buried, nor is what
+/// others bury only together. In the order of the parts; empty for a mesh without origins. O(parts), and 729
+/// evaluations of a shortened tape a sampled part. Error::Cancelled.
 Result<std::vector<BuriedParts>> findBuriedParts(const derive::Derivation& derivation, const Model& model,
                                                  const eval::Tape& tape, const mesh::Mesh& mesh, Progress* progress);
 

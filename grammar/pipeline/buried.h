@@ -9,8 +9,8 @@
 
 namespace sgm::pipeline {
 
-/// A warning for each place of the grammar whose parts are all buried (lower::findBuriedParts), the first few of many;
-/// the mesh is one as it comes from makeMesh. Error::Cancelled.
+/// A warning for each element of a rule's body whose parts are all buried (lower::findBuriedParts), the first few of
+/// many; the mesh is one as it comes from makeMesh. Error::Cancelled.
 Result<std::vector<MeshWarning>> buriedWarnings(const Model& model, const mesh::Mesh& mesh, Context& context);
 
 }  // namespace sgm::pipeline

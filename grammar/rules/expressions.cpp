@@ -74,10 +74,8 @@ Typed unknownName(CheckContext& ctx, const Place& place, const Written& e) {
     known.insert(known.end(), ctx.names.inherited.begin(), ctx.names.inherited.end());
     if (place.where == Where::Expect) known = figureNames(ctx.grammar);
     std::string hint = nearestHint(e.text, known);
-    if (e.text == "i")
-        hint = "'i' counts inside a rule with 'repeat' and in a '{ … }*'; other rules take it by 'with k = i'";
-    if (e.text == "split" || e.text == "repeat")
-        hint = "'i' counts the turns of a 'repeat' and of a '{ … }*'; other rules take it by 'with k = i'";
+    if (e.text == "i" || e.text == "split" || e.text == "repeat")
+        hint = "'i' counts the steps of a 'repeat' and of a '{ … }*'; 'with k = i' passes it to other rules";
     if (place.where == Where::Expect && hint.empty())
         hint = fmt::format("a check may ask for {} and count(Name)", fmt::join(figureNames(ctx.grammar), ", "));
     if (std::find(colorWords.begin(), colorWords.end(), e.text) != colorWords.end() && hint.empty())
@@ -147,14 +145,15 @@ Typed checkMember(CheckContext& ctx, Place& place, const Written& e) {
     const int axis = e.text == "x" ? 0 : e.text == "y" ? 1 : e.text == "z" ? 2 : -1;
     const bool named = e.args[0].kind == Written::Kind::Name;
     const bool ofScope = named && e.args[0].text == "scope", isArea = ofScope && e.text == "area";
-    if (const bool ofPlace = named && e.args[0].text == "here"; axis < 0 && !ofScope && !ofPlace)
+    const bool ofPlace = named && e.args[0].text == "here";
+    if (axis < 0 && !ofScope && !ofPlace)
         if (Typed whole = checkExpression(ctx, place, e.args[0]); !whole.type.known) return whole;
     if (axis < 0 && !isArea)
         return fail(ctx, e.span, fmt::format("there is no '.{}'", e.text),
                     ofScope ? "write .x, .y, .z or .area" : "write .x, .y or .z");
     Typed result;
     result.expr.span = e.span;
-    if (ofScope || (named && e.args[0].text == "here")) {
+    if (ofScope || ofPlace) {
         if (place.where < Where::Guard || place.where == Where::Expect || (ofScope && place.ofMap))
             return fail(ctx, e.span,
                         fmt::format("there is no shape here whose {} could be asked", ofScope ? "scope" : "place"),

@@ -3,8 +3,6 @@
 #include <vector>
 
 #include "grammar/lower/buried_parts.h"
-#include "modeler/mesh/polygonize.h"
-#include "modeler/mesh/subdivide.h"
 #include "tests/lower/lost_parts.h"
 
 namespace sgm {
@@ -12,15 +10,11 @@ namespace {
 
 using namespace testing_;
 
-/// Symbol and number of parts of each place that is buried.
+/// Symbol and number of parts of each buried element.
 std::vector<std::string> buriedIn(const std::string& body) {
     const Lowered model("grammar 2\n" + body);
-    const float cell_m = mesh::cellFor(model.model->field.bounds, 48);
-    const mesh::Grid grid = mesh::gridFor(model.model->field.bounds, cell_m);
-    mesh::Counts counts;
-    const auto blocks = mesh::subdivide(model.tape(), grid, 2, nullptr, counts);
-    const auto mesh = mesh::polygonize(*blocks, grid, {.surface = mesh::Surface::Crisp, .threads = 2}, nullptr, counts);
-    const auto found = lower::findBuriedParts(model.derivation, *model.model, model.tape(), *mesh, nullptr);
+    const mesh::Mesh mesh = meshedWith(model, mesh::cellFor(model.model->field.bounds, 48), mesh::Surface::Crisp);
+    const auto found = lower::findBuriedParts(model.derivation, *model.model, model.tape(), mesh, nullptr);
     EXPECT_TRUE(found.ok());
     std::vector<std::string> names;
     for (const lower::BuriedParts& b : *found)

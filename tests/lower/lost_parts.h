@@ -8,10 +8,19 @@
 #include <map>
 #include <set>
 
-#include "modeler/mesh/mesh.h"
+#include "modeler/mesh/polygonize.h"
+#include "modeler/mesh/subdivide.h"
 #include "tests/lower/lowered.h"
 
 namespace sgm::testing_ {
+
+/// As it comes from polygonising, unsimplified.
+inline mesh::Mesh meshedWith(const Lowered& model, float cell_m, mesh::Surface surface) {
+    const mesh::Grid grid = mesh::gridFor(model.model->field.bounds, cell_m);
+    mesh::Counts counts;
+    const auto blocks = mesh::subdivide(model.tape(), grid, 2, nullptr, counts);
+    return *mesh::polygonize(*blocks, grid, {.surface = surface, .threads = 2}, nullptr, counts);
+}
 
 /// Points as the evaluation takes them.
 struct PointRows {

@@ -3,8 +3,6 @@
 
 #include "grammar/lower/thin_parts.h"
 #include "grammar/rules/params.h"
-#include "modeler/mesh/polygonize.h"
-#include "modeler/mesh/subdivide.h"
 #include "tests/lower/lost_parts.h"
 
 namespace sgm {
@@ -12,12 +10,6 @@ namespace {
 
 using namespace testing_;
 
-mesh::Mesh meshedWith(const Lowered& model, float cell_m, mesh::Surface surface) {
-    const mesh::Grid grid = mesh::gridFor(model.model->field.bounds, cell_m);
-    mesh::Counts counts;
-    const auto blocks = mesh::subdivide(model.tape(), grid, 2, nullptr, counts);
-    return *mesh::polygonize(*blocks, grid, {.surface = surface, .threads = 2}, nullptr, counts);
-}
 mesh::Mesh meshed(const Lowered& model, int cells) {
     return meshedWith(model, mesh::cellFor(model.model->field.bounds, cells), mesh::Surface::Cubes);
 }

@@ -4,11 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "grammar/pipeline/grids.h"
-#include "grammar/pipeline/load.h"
-#include "grammar/pipeline/mesh_edits.h"
-#include "grammar/pipeline/meshing.h"
 #include "modeler/mesh/validate.h"
+#include "tests/pipeline/crisp_model.h"
 
 namespace sgm::pipeline {
 namespace {
@@ -37,20 +34,12 @@ TEST_P(Tips, AreWhereTheyShouldBe) {
             std::string text = "grammar 2\nterminal solid\nstart A -> " + std::string(tip.text) + "\n";
             for (size_t at; (at = text.find('X')) != std::string::npos;)
                 text.replace(at, 1, std::to_string(shift_m) + "m");
-            syntax::Diagnostics problems;
-            const auto grammar = load("tip.sgm", text, problems);
-            ASSERT_TRUE(grammar) << text;
             Context context{nullptr, 2};
-            const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
-            ASSERT_TRUE(model.ok()) << text;
-            const mesh::Grid grid = gridOf(*model, resolution);
-            auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
-            ASSERT_TRUE(meshed.ok());
-            const auto mesh = edited(std::move(meshed->mesh), {.tolerance_m = tolerance_m},
-                                     {model->tape, mesh::Surface::Crisp, grid.cell_m}, context);
+            CrispModel crisp = crispModel(text, resolution, context);
+            const auto mesh = crisp.edit({.tolerance_m = tolerance_m}, context);
             ASSERT_TRUE(mesh.ok());
             const Vec3d apex = tip.apex + Vec3d{shift_m, 0, shift_m};
-            EXPECT_LT(distanceTo(*mesh, apex), 0.02 * static_cast<double>(grid.cell_m))
+            EXPECT_LT(distanceTo(*mesh, apex), 0.02 * static_cast<double>(crisp.grid.cell_m))
                 << tip.name << " moved " << shift_m << " m, resolution " << resolution;
             const auto validation = mesh::validate(*mesh);
             ASSERT_TRUE(validation.ok());
@@ -84,40 +73,23 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(CompleteTips, StayWhereTheirVertexWasConfined) {
-    syntax::Diagnostics problems;
-    const auto grammar =
-        load("tip.sgm",
-             "grammar 2\nterminal cover\n"
-             "start A -> cube size (16m, .5m, 16m) + size (1.5m, 1m, 1.5m) turn (0deg, 18.08deg, 0deg) "
-             "move (0.3997m, .25m, -0.4819m) footprint ngon(6, 0.75m) hipRoof(70deg) of cover\n",
-             problems);
-    ASSERT_TRUE(grammar);
     Context context{nullptr, 2};
-    const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
-    ASSERT_TRUE(model.ok());
-    const mesh::Grid grid = gridOf(*model, 160);
-    auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
-    ASSERT_TRUE(meshed.ok());
-    const auto mesh = edited(std::move(meshed->mesh), {.tolerance_m = 1e-3},
-                             {model->tape, mesh::Surface::Crisp, grid.cell_m}, context);
+    CrispModel crisp = crispModel(
+        "grammar 2\nterminal cover\n"
+        "start A -> cube size (16m, .5m, 16m) + size (1.5m, 1m, 1.5m) turn (0deg, 18.08deg, 0deg) "
+        "move (0.3997m, .25m, -0.4819m) footprint ngon(6, 0.75m) hipRoof(70deg) of cover\n",
+        160, context);
+    const auto mesh = crisp.edit({.tolerance_m = 1e-3}, context);
     ASSERT_TRUE(mesh.ok());
     EXPECT_LT(distanceTo(*mesh, {0.3997, 1.13959, -0.4819}), 1e-4);
 }
 
 TEST(Edits, CanBeCancelledWhileTipsAreSought) {
-    syntax::Diagnostics problems;
-    const auto grammar = load("tip.sgm", "grammar 2\nstart A -> cone size (1.5m, 8m, 1.5m)\n", problems);
-    ASSERT_TRUE(grammar);
     Progress progress;
     Context context{&progress, 2};
-    const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
-    ASSERT_TRUE(model.ok());
-    const mesh::Grid grid = gridOf(*model, 64);
-    auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
-    ASSERT_TRUE(meshed.ok());
+    CrispModel crisp = crispModel("grammar 2\nstart A -> cone size (1.5m, 8m, 1.5m)\n", 64, context);
     progress.cancel();
-    const auto mesh = edited(std::move(meshed->mesh), {.tolerance_m = 0.0},
-                             {model->tape, mesh::Surface::Crisp, grid.cell_m}, context);
+    const auto mesh = crisp.edit({.tolerance_m = 0.0}, context);
     ASSERT_FALSE(mesh.ok());
     EXPECT_EQ(mesh.error().kind, Error::Kind::Cancelled);
     EXPECT_STREQ(progress.stage(), "tips");

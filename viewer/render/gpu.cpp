@@ -94,10 +94,8 @@ void Program::set(const char* name, uint32_t value) const {
 void Program::set(const char* name, Vec3f v) const {
     glProgramUniform3f(id(), glGetUniformLocation(id(), name), v.x, v.y, v.z);
 }
-void Program::set(const char* name, const Matrix4& matrix) const { set(name, std::span(&matrix, 1)); }
-void Program::set(const char* name, std::span<const Matrix4> matrices) const {
-    glProgramUniformMatrix4fv(id(), glGetUniformLocation(id(), name), static_cast<GLsizei>(matrices.size()), GL_FALSE,
-                              matrices.front().data());
+void Program::set(const char* name, const Matrix4& matrix) const {
+    glProgramUniformMatrix4fv(id(), glGetUniformLocation(id(), name), 1, GL_FALSE, matrix.data());
 }
 
 Buffer Buffer::ofBytes(const void* bytes, size_t size) {

@@ -86,8 +86,6 @@ public:
     void set(const char* name, uint32_t value) const;
     void set(const char* name, Vec3f value) const;
     void set(const char* name, const Matrix4& matrix) const;
-    /// An array of them.
-    void set(const char* name, std::span<const Matrix4> matrices) const;
 };
 
 /// A buffer of plain values for shader storage, vertices or indices.

@@ -50,7 +50,7 @@ struct Subsample {
 /// A prepared mesh in GPU memory. May be made in one context and drawn in another that shares with it.
 class MeshScene {
 public:
-    /// Directions of sky whose light is told apart: in a window, where every frame asks all of them, and in a picture.
+    /// Directions from which light of the sky is sampled: fewer in a window, where every frame samples them all.
     static constexpr size_t skyMapsOfWindows = 40, skyMapsOfPictures = 128;
 
     MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs,

@@ -51,7 +51,7 @@ float opennessAt(vec3 p, vec3 normal, float away) {
     float softness = away * sqrt(2.0 / float(skyCount)), noise = pixelNoise();
     for (int i = 0; i < skyCount; ++i) {
         mat4 m = skyFromWorld[i];
-        // The third row points away from the light.
+        // The third row points away from the light, 1 / mapSpan long.
         float cosine = -dot(normal, vec3(m[0].z, m[1].z, m[2].z)) * mapSpan;
         if (cosine <= 0.0) continue;
         vec3 start = p;

@@ -1,0 +1,41 @@
+// A grammar's model with its crisp mesh, for tests of what is done to meshes.
+// Enters: the text of a grammar. Leaves: model, grid and mesh. Assumes a text without errors.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "grammar/pipeline/grids.h"
+#include "grammar/pipeline/load.h"
+#include "grammar/pipeline/mesh_edits.h"
+#include "grammar/pipeline/meshing.h"
+
+namespace sgm::pipeline {
+
+struct CrispModel {
+    Model model;
+    mesh::Grid grid;
+    mesh::Mesh mesh;
+
+    /// `edited` with this model's field; the mesh is moved from.
+    Result<mesh::Mesh> edit(const MeshEdits& edits, Context& context) {
+        return edited(std::move(mesh), edits, {model.tape, mesh::Surface::Crisp, grid.cell_m}, context);
+    }
+};
+
+/// `resolution` cells along the longest side. A text with errors fails the test, and the program ends.
+inline CrispModel crispModel(const std::string& text, int resolution, Context& context) {
+    syntax::Diagnostics problems;
+    const auto grammar = load("test.sgm", text, problems);
+    EXPECT_TRUE(grammar) << text;
+    auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
+    EXPECT_TRUE(model.ok()) << text;
+    const mesh::Grid grid = gridOf(*model, resolution);
+    auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
+    EXPECT_TRUE(meshed.ok()) << text;
+    return {std::move(*model), grid, std::move(meshed->mesh)};
+}
+
+}  // namespace sgm::pipeline
