@@ -189,7 +189,8 @@ void readShape(Cursor& cursor, Element& element) {
     } else if (cursor.at(Token::Kind::Word) && isLaterOperation(cursor.peekText())) {
         cursor.fail(cursor.found() + " is an operation of a later version of the language");
         return;
-    } else if (cursor.at(Token::Kind::Word) && !isReserved(cursor.peekText())) {
+    } else if (cursor.at(Token::Kind::Word) && !isReserved(cursor.peekText()) &&
+               (element.before.empty() || !atOperator(cursor))) {
         element.solid = readSolid(cursor);
     } else if (element.before.empty()) {
         const bool calculates = element.op != Operator::None && cursor.at(Token::Kind::Number);

@@ -168,6 +168,9 @@ TEST(Parser, WordsThatAreBothSolidAndOperation) {
     EXPECT_EQ(elementOf(parsed("start A -> morph(cube, sphere, .5)\n")).solid->text, "morph");
     EXPECT_EQ(elementOf(parsed("start A -> morph torus by .2\n")).op, Operator::Morph);
     EXPECT_EQ(elementOf(parsed("start A -> morph (torus + cube) by .2\n")).kind, Element::Kind::Group);
+    const auto splits = parsed("start A -> split y { ~1: wall } morph split y { 1m: wall } by .2\n");
+    ASSERT_EQ(splits.starts[0].body.siblings[0].size(), 2u);
+    EXPECT_EQ(splits.starts[0].body.siblings[0][1].op, Operator::Morph);
 }
 
 TEST(Parser, WithHoldsItsNameAndItsValue) {
