@@ -66,8 +66,9 @@ struct DerivationInput {
     std::vector<rules::Value> params;
     uint32_t start = 0;  ///< index into Grammar::starts
     uint64_t seed = 0;
-    bool isPlaced = false;   ///< it is an object of another model, and stands on no ground of its own
-    bool planAlone = false;  ///< made with Options::planAlone
+    bool isPlaced = false;    ///< it is an object of another model, and stands on no ground of its own
+    bool planAlone = false;   ///< made with Options::planAlone
+    bool isAlongWay = false;  ///< made by the steps of a `derive` way: what is left live may be meant so
 };
 
 /// What a derivation counted.
@@ -121,8 +122,11 @@ syntax::Diagnostics ungrown(const Derivation& derivation);
 /// lies beside what does. Boxes decide, so that a cutter that only its box lets touch its host isn't told.
 syntax::Diagnostics uncut(const Derivation& derivation);
 
-/// All warnings of a derivation, in the order of the text: its remarks, places that never picked anything, `ungrown`
-/// and `uncut`.
+/// A warning for every symbol of which a shape stays empty since no guard of its rules holds there.
+syntax::Diagnostics unmatched(const Derivation& derivation);
+
+/// All warnings of a derivation, in the order of the text: its remarks, places that never picked anything, `ungrown`,
+/// `unmatched` and `uncut`.
 syntax::Diagnostics warnings(const Derivation& derivation);
 
 /// Error::Input where a derivation leaves nothing solid: its first warning as the cause, or else that no solid is

@@ -1,4 +1,4 @@
-// What `check … expect` asks of a derivation: overlapping boxes; and what didn't grow.
+// What `check … expect` asks of a derivation: overlapping boxes, and more.
 #include <algorithm>
 #include <unordered_set>
 
@@ -76,25 +76,6 @@ uint64_t Derivation::overlaps() const {
         return count < mostOverlaps;
     });
     return count;
-}
-
-syntax::Diagnostics ungrown(const Derivation& derivation) {
-    syntax::Diagnostics warnings;
-    for (const Closed& closed : derivation.closed) {
-        const auto isOf = [&](const Shape& s) {
-            return s.span.source == closed.span.source && s.span.begin == closed.span.begin &&
-                   s.span.end == closed.span.end;
-        };
-        const auto& shapes = derivation.tree.shapes;
-        const bool asksFree = closed.span.text().find("at free") != std::string_view::npos;
-        if (std::none_of(shapes.begin(), shapes.end(), isOf))
-            warnings.warning(closed.span,
-                             asksFree ? "none of these joints is free any more, so this grows nowhere"
-                                      : "another shape has closed its joint, so this grows nowhere",
-                             asksFree ? "name more joints in 'free(…)', or place it by 'move'"
-                                      : "choose another joint of ours, 'at free(…)', or place it by 'move'");
-    }
-    return warnings;
 }
 
 }  // namespace sgm::derive

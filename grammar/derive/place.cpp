@@ -20,18 +20,19 @@ bool needsGroup(const Element& e, const Shape& shape) {
     return shape.live || shape.extras != none || (e.content.group() && e.live != rules::none);
 }
 
-/// The matched scope as prefix attributes leave it; each sees what those before it made.
-/// Nothing where no footprint is left. What they say of the shapes below goes to `values`.
-std::optional<Scope> changedScope(const std::vector<Attribute>& prefix, Place place,
-                                  std::vector<std::pair<std::string, rules::Value>>& values) {
+/// The matched scope as prefix attributes leave it; each sees what those before it made. Nothing where no footprint is
+/// left. What they say of the shapes below goes to `all`, and whether the element set its footprint itself.
+std::optional<Scope> changedScope(const std::vector<Attribute>& prefix, Place place, EvaluatedAttributes& all) {
     for (const Attribute& a : prefix) {
         if (a.operation->phase != Phase::Scope) continue;
         EvaluatedAttributes out;
         out.scope = place.scope;
+        out.ownsFootprint = all.ownsFootprint;
         AttributeContext context{place, out};
         a.operation->apply(context, a);
         if (out.vanishes) return std::nullopt;
-        values.insert(values.end(), out.extras.values.begin(), out.extras.values.end());
+        all.extras.values.insert(all.extras.values.end(), out.extras.values.begin(), out.extras.values.end());
+        all.ownsFootprint = out.ownsFootprint;
         place.scope = out.scope;
         place.scope.centre += out.moved_m + out.grown_m;
     }
@@ -110,7 +111,7 @@ void Interpreter::annotate(const Element& e, Frame& frame, uint64_t key) {
     Place place = frame.place;
     place.key = key;
     EvaluatedAttributes attributes;
-    if (const auto scope = changedScope(e.prefix, place, attributes.extras.values)) frame.place.scope = *scope;
+    if (const auto scope = changedScope(e.prefix, place, attributes)) frame.place.scope = *scope;
     applyWhole(e.prefix, place, attributes);
     const Extras& x = attributes.extras;
     if (x.empty()) return;
@@ -132,7 +133,7 @@ bool Interpreter::placeHead(const Element& e, Frame& frame, Target& target, uint
     place.key = key;
     EvaluatedAttributes attributes;
     if (!e.prefix.empty()) {
-        const auto scope = changedScope(e.prefix, place, attributes.extras.values);
+        const auto scope = changedScope(e.prefix, place, attributes);
         if (!scope || builder_.monitor().failed()) return !builder_.monitor().failed();
         place.scope = *scope;
     }

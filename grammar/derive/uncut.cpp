@@ -1,4 +1,4 @@
-// Differences that remove nothing, and all warnings of a derivation together.
+// Differences that remove nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -113,36 +113,6 @@ syntax::Diagnostics uncut(const Derivation& derivation) {
                              "'through Wall' after the cutter");
     }
     return warnings;
-}
-
-Error nothingSolid(const Derivation& derivation) {
-    const std::string root = derivation.tree.path(0);
-    syntax::Diagnostics causes = derivation.selections.warnings();
-    if (causes.all().empty()) causes = warnings(derivation);
-    if (causes.all().empty())
-        return {Error::Kind::Input,
-                syntax::placeText(derivation.tree.shapes[0].span) +
-                    fmt::format("nothing solid is left of '{}': name a solid in it, such as 'cube'", root)};
-    const syntax::Diagnostic& cause = causes.all().front();
-    return {Error::Kind::Input, syntax::placeText(cause.span) + fmt::format("{}, and nothing solid is left of '{}'; {}",
-                                                                            cause.message, root, cause.hint)};
-}
-
-syntax::Diagnostics warnings(const Derivation& derivation) {
-    std::vector<syntax::Diagnostic> list;
-    for (const Warning& r : derivation.warnings) list.push_back({syntax::Severity::Warning, r.span, r.message, r.hint});
-    for (const syntax::Diagnostics& found : {derivation.selections.warnings(), ungrown(derivation), uncut(derivation)})
-        list.insert(list.end(), found.all().begin(), found.all().end());
-    const auto& sources = derivation.grammar->sources;
-    const auto rank = [&](const syntax::Diagnostic& d) {
-        const auto at =
-            std::find_if(sources.begin(), sources.end(), [&](const auto& s) { return s.get() == d.span.source; });
-        return std::pair(at - sources.begin(), d.span.begin);
-    };
-    std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
-    syntax::Diagnostics sorted;
-    for (syntax::Diagnostic& d : list) sorted.warning(d.span, std::move(d.message), std::move(d.hint));
-    return sorted;
 }
 
 }  // namespace sgm::derive

@@ -57,6 +57,15 @@ TEST(Warnings, WhatAClosedJointKeepsFromGrowingIsAmongThem) {
               "2:50 none of these joints is free any more, so this grows nowhere\n");
 }
 
+TEST(Warnings, AShapeThatNoRuleMatchesIsTold) {
+    const std::string split = "start A -> size 4 split x { ~1: cube | 1m: N | 1m: N | ~2: N }\n";
+    EXPECT_EQ(told(split + "rule N when scope.x > 3 -> cube\n"), "3:13 a 'N' that no rule matches stays empty\n");
+    EXPECT_EQ(told(split + "rule N when scope.x > 1 -> cube\n"), "3:13 a 'N' that no rule matches stays empty\n");
+    EXPECT_EQ(told(split + "rule N when scope.x > 3 -> cube\nrule N -> nil\n"), "");
+    EXPECT_EQ(told("start A -> cube : N\nrule N when scope.x > 3 -> + cube at +x : N\n"), "") << "the cube stands";
+    EXPECT_EQ(told("start A -> cube\nrule B -> cube : N\nrule N when 1 > 3 -> + cube at +x : N\n"), "");
+}
+
 TEST(Warnings, ATurnThatTheJointUndoesIsTold) {
     const std::string lost = " the joints face each other all the same: only the turn about them is left\n",
                       start = "start A -> cube size 2 : B\nrule B -> + cube size (.5, 3, .5) at ";

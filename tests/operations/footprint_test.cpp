@@ -95,6 +95,8 @@ TEST(Footprints, SharesFillTheScopeAndStretchWithIt) {
         areaOf("start A -> size (8, 3, 6) B\nrule B -> footprint outline((0%, 0%), (100%, 0%), (50%, 100%)) wall\n"),
         24, 1e-9);
     EXPECT_NEAR(areaOf("start A -> wall footprint ngon(4) size (8, 3, 6)\n"), 48, 1e-9);
+    EXPECT_NEAR(areaOf("start A -> footprint ngon(4) size (8, 3, 6) wall\n"), 48, 1e-9);
+    EXPECT_NEAR(areaOf("start A -> footprint ngon(4) wall size (8, 3, 6)\n"), 48, 1e-9);
     EXPECT_NEAR(areaOf("start A -> footprint ell(8, 8, 4, 4) B\nrule B -> wall size (200%, 100%, 50%)\n"), 48, 1e-9);
 }
 
