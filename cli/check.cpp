@@ -25,6 +25,7 @@ struct CheckRequest {
     double seconds = 60;  ///< for all `check` lines of a file, and for the model that `sgm build` makes
     uint64_t shapes = derive::Budget{}.shapes;
     double otherSeconds = 5;  ///< for the models of other starts, styles and ends of ranges
+    GridRequest grid;         ///< of the mesh that is looked at
     bool json = false;
 };
 
@@ -49,8 +50,9 @@ void printOfCells(const std::vector<pipeline::MeshWarning>& warnings) {
 int tryGrammar(const std::string& file, const std::shared_ptr<const rules::Grammar>& grammar,
                const CheckRequest& request, syntax::Diagnostics& diagnostics) {
     Watch watch(false);
-    const auto trials = tryModels(grammar, {request.seed, request.seconds, request.shapes, request.otherSeconds},
-                                  watch.progress(), diagnostics);
+    const auto trials =
+        tryModels(grammar, {request.seed, request.seconds, request.shapes, request.otherSeconds, request.grid},
+                  watch.progress(), diagnostics);
     if (!trials.ok()) return fail(trials.error());
     if (trials->tried < trials->all && !request.json)
         printMessage("note: {}: {} of {} settings were tried in {:g} s (--try-seconds)\n", file, trials->tried,
@@ -112,6 +114,7 @@ void addCheck(CLI::App& app, int& exitCode) {
                      "the ends of its range")
         ->check(between(0, 1e9))
         ->capture_default_str();
+    addGridOptions(*command, request->grid);
     command->add_flag("--json", request->json, "Problems as JSON, for editors");
     command->callback([request, &exitCode] { exitCode = check(*request); });
 }

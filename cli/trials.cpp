@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "cli/requests.h"
 #include "grammar/pipeline/missing.h"
 #include "grammar/pipeline/scene.h"
 #include "grammar/rules/params.h"
@@ -150,10 +149,10 @@ private:
         return setting.isMain && options_.otherSeconds > 0 ? lookAtMesh(*model) : Status(Done{});
     }
 
-    /// What `sgm build` would tell of the mesh at its usual cells: what floats, what is too thin.
+    /// What `sgm build` would tell of the mesh at the cells that are asked for: what floats, what is too thin.
     Status lookAtMesh(const Model& model) {
-        Context context{progress_};
-        const auto meshed = makeMesh(model, GridRequest{}, context);
+        Context context{progress_, options_.grid.threads};
+        const auto meshed = makeMesh(model, options_.grid, context);
         if (!meshed.ok()) return meshed.error();
         if (meshed->mesh.triangleCount() == 0 && model.derivation.objects.empty())
             return pipeline::noSurface(model, meshed->grid.cell_m);

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "cli/requests.h"
 #include "grammar/derive/derive.h"
 #include "grammar/pipeline/floating.h"
 #include "modeler/core/progress.h"
@@ -16,19 +17,20 @@ struct TrialOptions {
     double mainSeconds = 60;                    ///< for the model that `sgm build` makes without options
     uint64_t shapes = derive::Budget{}.shapes;  ///< of each model, as `sgm build` has it
     double otherSeconds = 5;                    ///< for all others together; those that are left then aren't tried
+    GridRequest grid{};                         ///< of the mesh of the main model
 };
 
 /// How the trials went.
 struct Trials {
     size_t tried = 0, all = 0;                   ///< settings
     bool budgetSpent = false;                    ///< the main model's error was one of a budget
-    std::vector<pipeline::MeshWarning> ofCells;  ///< of the main model at the usual cells, which lack parts
+    std::vector<pipeline::MeshWarning> ofCells;  ///< of the main model where its cells lack parts
 };
 
 /// Derives and lowers the first start as it is, whose problems are those of `sgm build`: errors are errors. Then every
 /// other start, every style and `derive` way, and every parameter of the main file at the ends of its range or at each
 /// choice, one at a time: what fails there is a warning that names the setting. What floats in the mesh of the first
-/// start at the usual cells is a warning too, unless these cells lack parts: then all that is told of the mesh is
+/// start is a warning too, unless these cells lack parts: then all that is told of the mesh is
 /// returned. Error::Cancelled.
 Result<Trials> tryModels(std::shared_ptr<const rules::Grammar> grammar, const TrialOptions& options, Progress* progress,
                          syntax::Diagnostics& diagnostics);

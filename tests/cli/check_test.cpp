@@ -42,6 +42,12 @@ TEST_F(Check, RefusesWhatBuildRefuses) {
                   "levels of depth is spent");
 }
 
+TEST_F(Check, LooksAtTheCellsThatAreAskedFor) {
+    const std::string beam = "start A -> cube size (1000, 1, 1)\n";
+    expectRefused(beam, "2:1", "there is no surface at cells of 7.81 m, for no part is thicker than 1 m: --cell 0.5");
+    EXPECT_EQ(checked(beam, " --cell 0.5").code, 0);
+}
+
 TEST_F(Check, BudgetsAreExitCodeThree) {
     EXPECT_EQ(checked("start A -> cube : B\nrule B repeat 1000000000 -> + cube at +x : B\n").code, 3);
 }
