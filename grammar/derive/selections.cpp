@@ -12,14 +12,21 @@ namespace sgm::derive {
 
 Explanation noEdgeCalled(std::string_view word, const plan::Footprint& footprint, std::string_view therefore,
                          const std::vector<std::string>& others) {
+    std::string message = fmt::format("no edge of this plan is called '{}', {}", word, therefore);
+    const auto add = [](std::vector<std::string>& words, std::string one) {
+        if (std::find(words.begin(), words.end(), one) == words.end()) words.push_back(std::move(one));
+    };
+    std::vector<std::string> own;
+    for (const plan::PlacedEdge& edge : plan::edgesOf(footprint))
+        for (std::string& name : plan::edgeWords(footprint, edge)) add(own, std::move(name));
+    if (plan::isCommonEdgeWord(word))
+        return {std::move(message), fmt::format("besides side, its edges are called {}", fmt::join(own, ", "))};
     std::vector<std::string> words(std::begin(plan::commonEdgeWords), std::end(plan::commonEdgeWords));
     words.insert(words.end(), others.begin(), others.end());
-    for (const plan::PlacedEdge& edge : plan::edgesOf(footprint))
-        for (std::string& own : plan::edgeWords(footprint, edge))
-            if (std::find(words.begin(), words.end(), own) == words.end()) words.push_back(std::move(own));
+    for (std::string& name : own) add(words, std::move(name));
     std::string hint = rules::nearestHint(word, words);
     if (hint.empty()) hint = fmt::format("the words here are {}", fmt::join(words, ", "));
-    return {fmt::format("no edge of this plan is called '{}', {}", word, therefore), std::move(hint)};
+    return {std::move(message), std::move(hint)};
 }
 
 size_t Selections::KeyHash::operator()(const Key& key) const {

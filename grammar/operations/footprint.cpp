@@ -111,7 +111,7 @@ void applySetback(AttributeContext& context, const Attribute& attribute) {
         if (at < words.size()) called[at] = true;
     }
     for (size_t i = 0; i < words.size(); ++i)
-        if (!plan::isCommonEdgeWord(words[i]))
+        if (words[i] != "rest")
             derive::select(*context.place.builder, attribute.args[i].span, called[i],
                            [&] { return derive::noEdgeCalled(words[i], footprint, "so none goes inward by this"); });
     auto inner = plan::setbackInBudget(footprint, distances);

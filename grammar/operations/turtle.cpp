@@ -8,6 +8,7 @@
 #include "grammar/derive/lsystem.h"
 #include "grammar/derive/parts_context.h"
 #include "grammar/operations/operations.h"
+#include "grammar/rules/letters.h"
 #include "grammar/rules/operation_checker.h"
 #include "grammar/rules/words.h"
 #include "modeler/core/random.h"
@@ -29,6 +30,17 @@ constexpr double leastStep_m = 1e-4;
 constexpr OperationArgument turtleArguments[] = {
     {"letters", ArgumentType::Name, "the lsystem whose letters it reads"},
     {"way", ArgumentType::Name, "upward: it begins at the foot of the scope and rises; else it goes along x", true}};
+
+void warnOfUnusedParts(OperationChecker& checker, const Parts& turtle) {
+    const rules::Lsystem& lsystem = checker.grammar().lsystems[turtle.index];
+    const auto letters = rules::lettersOf(lsystem);
+    for (const Parts::Part& part : turtle.parts)
+        if (!rules::holdsLetter(letters, part.label[0]))
+            checker.warning(
+                part.span,
+                fmt::format("no '{}' ever stands in '{}', so this part draws nothing", part.label, lsystem.name),
+                fmt::format("write {} into the axiom or into a production", part.label));
+}
 
 std::shared_ptr<Parts> checkTurtle(OperationChecker& checker, const syntax::Attribute& written) {
     auto out = std::make_shared<Parts>();
@@ -65,6 +77,7 @@ std::shared_ptr<Parts> checkTurtle(OperationChecker& checker, const syntax::Attr
         checker.beginDraws("part");
         part.body = c.body ? checker.partBody(*c.body) : std::make_shared<const rules::Body>();
     }
+    if (out->index != rules::none) warnOfUnusedParts(checker, *out);
     return out;
 }
 

@@ -6,6 +6,7 @@
 #include "grammar/rules/declarations.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/expressions.h"
+#include "grammar/rules/letters.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
 #include "modeler/core/conventions.h"
@@ -129,6 +130,7 @@ void checkLsystem(CheckContext& ctx, const syntax::LsystemDecl& decl) {
     if (out.axiom.empty() && decl.axiom.kind == syntax::Expr::Kind::Text)
         ctx.diagnostics.error(decl.axiom.span, "an axiom has at least one letter", "write 'axiom \"F+F+F+F\"'");
     for (const auto& written : decl.productions) checkProduction(ctx, written, out);
+    warnOfUnusedProductions(out, ctx.diagnostics);
 }
 
 }  // namespace

@@ -254,6 +254,10 @@ void OperationChecker::error(SourceSpan span, std::string message, std::string f
     context_.diagnostics.error(span, std::move(message), std::move(fix));
 }
 
+void OperationChecker::warning(SourceSpan span, std::string message, std::string fix) {
+    context_.diagnostics.warning(span, std::move(message), std::move(fix));
+}
+
 void OperationChecker::unknownName(SourceSpan span, const std::string& name, std::string message, std::string fix) {
     failUnknown(context_, span, name, std::move(message), std::move(fix));
 }

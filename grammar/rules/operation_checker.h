@@ -104,6 +104,7 @@ public:
     std::optional<uint32_t> report(const syntax::Expr& name, const Typed& value);
 
     void error(SourceSpan span, std::string message, std::string fix = {});
+    void warning(SourceSpan span, std::string message, std::string fix = {});
     /// An error about a name, silent where the name stands in a text that could not be read.
     void unknownName(SourceSpan span, const std::string& name, std::string message, std::string fix = {});
     size_t problemCount() const;

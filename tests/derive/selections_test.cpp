@@ -20,10 +20,18 @@ TEST(Selections, WordsOfFacesThatNoEdgeHasAreTold) {
               "edge wins\n");
 }
 
-TEST(Selections, WordsThatAPlanMayLackAreNot) {
-    EXPECT_EQ(told("start A -> footprint ngon(5) extrude 3m faces .2m { court: cube | front: cube | side: cube }\n"),
-              "");
-    EXPECT_EQ(told("start A -> footprint ngon(5) setback edges(court: 1m, rest: .1m) extrude 3m block\n"), "");
+TEST(Selections, WordsOfTheLanguageThatThePlanLacksAreTold) {
+    const std::string lacks = " no edge of this plan is called 'court', so no";
+    EXPECT_EQ(told("start A -> footprint rect(9, 5) extrude 3m faces .2m { court: cube | front: cube | side: cube }\n"),
+              "2:56" + lacks + " face gets this part; besides side, its edges are called back, right, front, left\n");
+    EXPECT_EQ(told("start A -> footprint rect(9, 5) setback edges(court: 1m, rest: .1m) extrude 3m block\n"),
+              "2:54" + lacks + "ne goes inward by this; besides side, its edges are called back, right, front, left\n");
+    EXPECT_EQ(told("start A -> footprint rect(9, 5) extrude 3m faces .2m { side: cube | front: cube }\n"),
+              "2:69 parts before this one take all edges called 'front'; write it before them: the first word that "
+              "fits an edge wins\n");
+    const std::string both = "start A -> footprint rect(9, 5) B, footprint ring(9, 9, 2) B\nrule B -> ";
+    EXPECT_EQ(told(both + "extrude 3m faces .2m { court: cube | side: cube }\n"), "");
+    EXPECT_EQ(told(both + "setback edges(court: .2m, rest: .1m) extrude 3m block\n"), "");
 }
 
 TEST(Selections, APlaceThatPicksSomethingOnceIsFine) {

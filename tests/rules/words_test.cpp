@@ -84,6 +84,20 @@ TEST(Told, LengthUnitsCountForTheWholeParameter) {
               "2:11 '5' stands beside cm and m; say its unit: '5cm' or '5m'\n");
 }
 
+TEST(Told, LettersThatNeverStandInAnLsystem) {
+    const std::string plan = "lsystem P passes 2 angle 90deg step 3m\n  axiom \"F(3)+X\"\n",
+                      rest = "start A -> size 9 turtle P { F: cube | L: sphere }\n";
+    EXPECT_EQ(told(plan + "  X -> \"XL\"\n" + rest), "");
+    EXPECT_EQ(
+        told(plan + "  X -> \"F(2)\"\n  Y -> \"L\"\n" + rest),
+        "5:3 no 'Y' ever stands in 'P', so this production is never applied; write the letter into the axiom or "
+        "into a production that is applied\n"
+        "6:40 no 'L' ever stands in 'P', so this part draws nothing; write L into the axiom or into a production\n");
+    EXPECT_EQ(
+        told(plan + "  X -> \"L\"\n  F -> \"FF\"\n" + rest),
+        "5:3 'F' never has 0 numbers in 'P', so this production is never applied; it stands there with 1 number\n");
+}
+
 TEST(Told, ZeroIsAShareInOutlines) {
     EXPECT_EQ(
         told("start A -> size 8 B\nrule B -> footprint outline((0, 0), (50%, 0), (50%, 100%)) extrude 3m block\n"), "");

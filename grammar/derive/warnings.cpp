@@ -1,0 +1,100 @@
+// What a derivation tells of itself: what was hardly meant, and why nothing is left of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "grammar/derive/derive.h"
+
+namespace sgm::derive {
+
+syntax::Diagnostics ungrown(const Derivation& derivation) {
+    syntax::Diagnostics warnings;
+    for (const Closed& closed : derivation.closed) {
+        const auto isOf = [&](const Shape& s) {
+            return s.span.source == closed.span.source && s.span.begin == closed.span.begin &&
+                   s.span.end == closed.span.end;
+        };
+        const auto& shapes = derivation.tree.shapes;
+        const bool asksFree = closed.span.text().find("at free") != std::string_view::npos;
+        if (std::none_of(shapes.begin(), shapes.end(), isOf))
+            warnings.warning(closed.span,
+                             asksFree ? "none of these joints is free any more, so this grows nowhere"
+                                      : "another shape has closed its joint, so this grows nowhere",
+                             asksFree ? "name more joints in 'free(…)', or place it by 'move'"
+                                      : "choose another joint of ours, 'at free(…)', or place it by 'move'");
+    }
+    return warnings;
+}
+
+namespace {
+
+/// Whether nothing stands at a shape, which no chain made in passing.
+bool isEmpty(const ShapeTree& tree, ShapeId id) {
+    const Shape shape = tree.shapes[id];
+    const Extras* extras = tree.extrasOf(id);
+    return shape.firstChild == none && shape.solid == none && shape.chainRule == none &&
+           (!extras || extras->object == none);
+}
+
+}  // namespace
+
+syntax::Diagnostics unmatched(const Derivation& derivation) {
+    syntax::Diagnostics warnings;
+    if (derivation.planAlone || derivation.isAlongWay) return warnings;
+    const rules::Grammar& grammar = *derivation.grammar;
+    std::map<rules::SymbolId, ShapeId> first;
+    for (ShapeId s = 0; s != none && !derivation.tree.shapes.empty(); s = derivation.tree.next(s)) {
+        if (!derivation.tree.shapes.record(s).live || !isEmpty(derivation.tree, s)) continue;
+        const rules::SymbolId symbol = derivation.tree.shapes[s].symbol;
+        if (symbol != rules::none) first.try_emplace(symbol, s);
+    }
+    for (const auto& [id, shape] : first) {
+        const rules::Symbol& symbol = grammar.symbols[id];
+        const auto isConditional = [&](uint32_t r) {
+            return grammar.rules[r].when || grammar.rules[r].beside != rules::none;
+        };
+        // What a rule without a condition doesn't match has closed joints, of which `ungrown` tells.
+        if (symbol.rules.empty() || !std::all_of(symbol.rules.begin(), symbol.rules.end(), isConditional)) continue;
+        const rules::Rule& rule = grammar.rules[symbol.rules[0]];
+        warnings.warning(rule.when ? rule.when->span : rule.span,
+                         fmt::format("a '{}' that no rule matches stays empty", symbol.name),
+                         fmt::format("the first is '{0}'; add 'rule {1} -> …' for it, or 'rule {1} -> nil' where "
+                                     "nothing is meant",
+                                     derivation.tree.path(shape), symbol.name));
+    }
+    return warnings;
+}
+
+Error nothingSolid(const Derivation& derivation) {
+    const std::string root = derivation.tree.path(0);
+    syntax::Diagnostics causes = derivation.selections.warnings();
+    if (causes.all().empty()) causes = warnings(derivation);
+    if (causes.all().empty())
+        return {Error::Kind::Input,
+                syntax::placeText(derivation.tree.shapes[0].span) +
+                    fmt::format("nothing solid is left of '{}': name a solid in it, such as 'cube'", root)};
+    const syntax::Diagnostic& cause = causes.all().front();
+    return {Error::Kind::Input, syntax::placeText(cause.span) + fmt::format("{}, and nothing solid is left of '{}'; {}",
+                                                                            cause.message, root, cause.hint)};
+}
+
+syntax::Diagnostics warnings(const Derivation& derivation) {
+    std::vector<syntax::Diagnostic> list;
+    for (const Warning& r : derivation.warnings) list.push_back({syntax::Severity::Warning, r.span, r.message, r.hint});
+    for (const syntax::Diagnostics& found :
+         {derivation.selections.warnings(), ungrown(derivation), unmatched(derivation), uncut(derivation)})
+        list.insert(list.end(), found.all().begin(), found.all().end());
+    const auto& sources = derivation.grammar->sources;
+    const auto rank = [&](const syntax::Diagnostic& d) {
+        const auto at =
+            std::find_if(sources.begin(), sources.end(), [&](const auto& s) { return s.get() == d.span.source; });
+        return std::pair(at - sources.begin(), d.span.begin);
+    };
+    std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+    syntax::Diagnostics sorted;
+    for (syntax::Diagnostic& d : list) sorted.warning(d.span, std::move(d.message), std::move(d.hint));
+    return sorted;
+}
+
+}  // namespace sgm::derive
