@@ -24,6 +24,12 @@ struct Constant {
     bool used = false, inWork = false;
 };
 
+/// A value that `with` sets: where first in the file itself (no source: in none), and whether an expression asks for it.
+struct InheritedName {
+    SourceSpan span;
+    bool used = false;
+};
+
 /// What a name means. Indices are into the lists of the Grammar.
 struct NameTable {
     std::map<std::string, uint32_t> params;
@@ -32,7 +38,7 @@ struct NameTable {
     std::map<std::string, uint32_t> maps;
     std::map<std::string, Constant> lets;
     std::map<std::string, const syntax::TerminalDecl*> terminals;
-    std::set<std::string> inherited;            ///< set by `with` somewhere
+    std::map<std::string, InheritedName> inherited;
     std::set<std::string> joints;               ///< declared by a terminal or a primitive
     std::set<SymbolId> ruled;                   ///< have a rule
     std::map<SymbolId, uint32_t> unnamedRules;  ///< how many so far

@@ -393,6 +393,15 @@ void warnOfUnused(CheckContext& ctx, const syntax::Ast& ast) {
     for (const auto& decl : ast.lets)
         if (const auto let = ctx.names.lets.find(decl.name.text); let != ctx.names.lets.end() && !let->second.used)
             ctx.diagnostics.warning(decl.name.span, fmt::format("nothing uses the value '{}'", decl.name.text));
+    for (const auto& [name, value] : ctx.names.inherited) {
+        if (!value.span.source || value.used) continue;
+        const bool isHidden = ctx.names.lets.contains(name), isWord = ast.operations && ast.operations->find(name);
+        ctx.diagnostics.warning(value.span,
+                                fmt::format("nothing reads '{}', which 'with' sets for the shapes below", name),
+                                isHidden ? "the file's own value of that name is read instead: give one of them another"
+                                : isWord ? fmt::format("write '{} …' without 'with' and '='", name)
+                                         : "");
+    }
 }
 
 }  // namespace sgm::rules

@@ -71,7 +71,7 @@ Typed unknownName(CheckContext& ctx, const Place& place, const Written& e) {
     for (const auto& local : place.locals) known.push_back(local.name);
     for (const auto& [let, constant] : ctx.names.lets) known.push_back(let);
     for (const auto& [map, index] : ctx.names.maps) known.push_back(map);
-    known.insert(known.end(), ctx.names.inherited.begin(), ctx.names.inherited.end());
+    for (const auto& [value, facts] : ctx.names.inherited) known.push_back(value);
     if (place.where == Where::Expect) known = figureNames(ctx.grammar);
     std::string hint = nearestHint(e.text, known);
     if (e.text == "i" || e.text == "split" || e.text == "repeat")
@@ -122,8 +122,10 @@ Typed checkName(CheckContext& ctx, Place& place, const Written& e) {
         if (ctx.params.broken.contains(param->second)) return {makeUnreadable(e.span), Type::unknown()};
         return result;
     }
-    if (ctx.names.inherited.contains(e.text) && !place.ofMap && place.where >= Where::Guard &&
+    const auto inherited = ctx.names.inherited.find(e.text);
+    if (inherited != ctx.names.inherited.end() && !place.ofMap && place.where >= Where::Guard &&
         place.where != Where::Expect) {
+        inherited->second.used = true;
         result.expr.kind = Expr::Kind::Inherited;
         result.expr.value = makeWord(e.text);
         result.type = Type::unknown();

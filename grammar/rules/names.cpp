@@ -83,9 +83,14 @@ void collectNames(CheckContext& ctx, const std::vector<syntax::Case>& cases) {
     }
 }
 
+void noteInherited(CheckContext& ctx, const syntax::Expr& name) {
+    InheritedName& known = ctx.names.inherited[name.text];
+    if (!known.span.source && name.span.source == ctx.grammar.sources[0].get()) known.span = name.span;
+}
+
 void collectNames(CheckContext& ctx, const syntax::Attribute& attribute) {
     if (attribute.operation->traits.namesValue && !attribute.args.empty())
-        ctx.names.inherited.insert(attribute.args[0].text);
+        noteInherited(ctx, attribute.args[0]);
     collectNames(ctx, attribute.cases);
 }
 

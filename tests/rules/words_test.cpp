@@ -98,6 +98,17 @@ TEST(Told, LettersThatNeverStandInAnLsystem) {
         "5:3 'F' never has 0 numbers in 'P', so this production is never applied; it stands there with 1 number\n");
 }
 
+TEST(Told, ValuesOfWithThatNothingReads) {
+    EXPECT_EQ(told("start A -> cube with k = 3 : B\nrule B -> + cube size k at +x\n"), "");
+    EXPECT_EQ(told("start A -> cube with k = 3 : B\nrule B when k > 2 -> + cube at +x\n"), "");
+    EXPECT_EQ(told("start A -> cube with side = +x : B\nrule B -> + cube at side\n"), "");
+    EXPECT_EQ(told("start A -> cube with k = 3 : B\nrule B -> + cube at +x\n"),
+              "2:22 nothing reads 'k', which 'with' sets for the shapes below\n");
+    EXPECT_EQ(told("start A -> cube with color = #aabbcc\n"),
+              "2:22 nothing reads 'color', which 'with' sets for the shapes below; write 'color …' without 'with' and "
+              "'='\n");
+}
+
 TEST(Told, ZeroIsAShareInOutlines) {
     EXPECT_EQ(
         told("start A -> size 8 B\nrule B -> footprint outline((0, 0), (50%, 0), (50%, 100%)) extrude 3m block\n"), "");
