@@ -197,7 +197,7 @@ bool runAlong(PartsContext& context, const Parts& split) {
     const double whole = plan::length(footprint, chain);
     auto pieces = layOut(context, split, whole);
     if (!pieces) return false;
-    placePieces(context, *pieces, whole);
+    placePieces(context, split, *pieces, whole);
     std::erase_if(*pieces, [&](const Piece& p) { return p.to - p.from <= leastCut_m; });
     std::vector<double> cuts;
     for (const Piece& piece : *pieces)
@@ -223,7 +223,7 @@ bool runByArea(PartsContext& context, const Parts& split) {
     const double whole = area(footprint);
     auto pieces = layOut(context, split, whole);
     if (!pieces) return false;
-    placePieces(context, *pieces, whole);
+    placePieces(context, split, *pieces, whole);
     std::vector<double> areas;
     for (const Piece& piece : *pieces) areas.push_back(piece.to - piece.from);
     const std::vector<plan::Footprint> parts = plan::splitByArea(footprint, split.axis == 0 ? 0 : 1, areas);
@@ -252,7 +252,7 @@ bool runSplit(PartsContext& context, const Parts& split) {
     const double whole_m = context.scope().size[split.axis];
     auto pieces = layOut(context, split, whole_m);
     if (!pieces) return false;
-    placePieces(context, *pieces, whole_m);
+    placePieces(context, split, *pieces, whole_m);
     if (split.snap && !snapPieces(context, split, *pieces)) return false;
     return runPieces(context, *pieces,
                      [&](size_t i) { return context.cut(split.axis, (*pieces)[i].from, (*pieces)[i].to); });

@@ -194,13 +194,41 @@ std::optional<double> nearest(const std::vector<double>& lines, const std::vecto
     return best;
 }
 
+/// Whether a part is `part` or one of those that it repeats.
+bool holds(const Part& part, const Part* other) {
+    return &part == other || std::any_of(part.repeated.begin(), part.repeated.end(),
+                                         [&](const Part& inner) { return holds(inner, other); });
+}
+
+/// Notes of the parts that give way, or repeat as often as they fit, whether anything is left for them.
+void noteParts(PartsContext& context, const Parts& split, const std::vector<Piece>& pieces, double whole) {
+    for (const Part& part : split.parts) {
+        if (!part.floating && !isFill(part)) continue;
+        bool isLeft = false, isWished = isFill(part);
+        for (const Piece& piece : pieces) {
+            if (isLeft || !holds(part, piece.part)) continue;
+            isLeft = piece.to - piece.from > leastPart;
+            isWished = isWished || piece.length.wished() > leastPart;
+        }
+        if (!isLeft && !isWished) continue;
+        context.select(part.span, isLeft, [&] {
+            const Scope& root = context.place().tree->shapes[0].scope;
+            const bool isOfStart = context.scope().size == root.size && root.size == Vec3d{1, 1, 1};
+            return derive::Explanation{
+                fmt::format("nothing is left of {:.4g}{} for this part", whole, split.byArea ? "m2" : "m"),
+                isOfStart ? "the scope of a start is 1 m a side: write 'size (…)' before the split"
+                          : "make the other sizes smaller, or what is split larger"};
+        });
+    }
+}
+
 }  // namespace
 
 std::optional<std::vector<Piece>> layOut(PartsContext& context, const Parts& split, double whole) {
     return LayOut(context, whole).run(split);
 }
 
-void placePieces(PartsContext& context, std::vector<Piece>& pieces, double whole) {
+void placePieces(PartsContext& context, const Parts& split, std::vector<Piece>& pieces, double whole) {
     Length all;
     for (const Piece& piece : pieces) all += piece.length;
     const double perFloat = all.floating > 0 ? std::max(0.0, whole - all.fixed) / all.floating : 0;
@@ -218,6 +246,7 @@ void placePieces(PartsContext& context, std::vector<Piece>& pieces, double whole
         piece.from = from;
         piece.to = from = std::min(whole, from + wanted);
     }
+    noteParts(context, split, pieces, whole);
 }
 
 void snapCuts(std::vector<Piece>& pieces, std::vector<double> lines, double reach) {

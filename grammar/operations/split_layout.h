@@ -41,8 +41,8 @@ struct Piece {
 std::optional<std::vector<Piece>> layOut(derive::PartsContext& context, const rules::Parts& split, double whole);
 
 /// Gives every piece its place: floating sizes share what fixed ones leave; what lies beyond the whole is cut off, with
-/// a warning.
-void placePieces(derive::PartsContext& context, std::vector<Piece>& pieces, double whole);
+/// a warning. Parts of the split for which nothing is left wherever it is derived are told as well.
+void placePieces(derive::PartsContext& context, const rules::Parts& split, std::vector<Piece>& pieces, double whole);
 
 /// Moves cuts between floating sizes onto the nearest of `lines` within `reach`; what is fixed keeps its length, and
 /// every floating part a fifth of its own. Assumes placed pieces.

@@ -44,6 +44,20 @@ TEST(Selections, APlaceThatPicksSomethingOnceIsFine) {
     EXPECT_NE(told(plan + "start A -> footprint Q B\n").find("no edge of this plan is called 'W'"), std::string::npos);
 }
 
+TEST(Selections, PartsOfASplitForWhichNothingIsLeftAreTold) {
+    EXPECT_EQ(told("start A -> split x { 1m: cube | ~1: sphere }\n"),
+              "2:33 nothing is left of 1m for this part; the scope of a start is 1 m a side: write 'size (…)' before "
+              "the split\n");
+    const std::string smaller = "; make the other sizes smaller, or what is split larger\n";
+    EXPECT_EQ(
+        told("start A -> size 2 split x { 2m: cube | ~1: sphere | ~1: nil }\n"),
+        "2:40 nothing is left of 2m for this part" + smaller + "2:53 nothing is left of 2m for this part" + smaller);
+    EXPECT_EQ(told("start A -> size 2 split x { 1m: cube | { 2m: sphere }* }\n"),
+              "2:40 nothing is left of 2m for this part" + smaller);
+    EXPECT_EQ(told("start A -> size 2 split x { 2m: cube | ~0: sphere }\n"), "") << "it asks for nothing";
+    EXPECT_EQ(told("start A -> size 2 B, size 4 B\nrule B -> split x { 2m: cube | ~1: sphere }\n"), "");
+}
+
 TEST(Selections, SetbacksTellWordsAndWhatTheyLeave) {
     EXPECT_EQ(told("start A -> footprint rect(10, 8) setback edges(fornt: 2m, rest: 1m) extrude 4m block\n"),
               "2:55 no edge of this plan is called 'fornt', so none goes inward by this; did you mean 'front'?\n");
