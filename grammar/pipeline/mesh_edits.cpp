@@ -36,7 +36,7 @@ Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, const MeshSou
         if (!result.ok()) return result;
         mesh = std::move(*result);
     }
-    if (surface == mesh::Surface::Crisp) mesh::turnNormalsOutward(mesh);
+    if (surface == mesh::Surface::Crisp) mesh::correctNormals(mesh);
     return mesh;
 }
 

@@ -24,7 +24,8 @@ struct Constant {
     bool used = false, inWork = false;
 };
 
-/// A value that `with` sets: where first in the file itself (no source: in none), and whether an expression asks for it.
+/// A value that `with` sets: where first in the file itself (no source: in none), and whether an expression asks for
+/// it.
 struct InheritedName {
     SourceSpan span;
     bool used = false;

@@ -98,13 +98,34 @@ void ChosenPaths::findLive(size_t n) {
     }
 }
 
+/// Which points take the second operand's derivatives: those that take its value; of two that tie and bend by little
+/// against each other, those that take its name.
+uint64_t ChosenPaths::derivativesOfSecond(const Instruction& in, const Choice& choice) const {
+    constexpr float sameSide = .7f;  // cosine
+    alignas(vectorFloats * sizeof(float)) std::array<float, pathPoints> numbers[2];
+    uint64_t seconds = choice.values;
+    for (uint64_t tied = (choice.values ^ choice.names) & choice.points; tied != 0; tied &= tied - 1) {
+        const auto i = static_cast<size_t>(std::countr_zero(tied));
+        Vec3f a, b;
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto plane = static_cast<size_t>(axis + 1);
+            a[axis] = operandRow(in.a, live_, planes_, plane, numbers[0].data())[i];
+            b[axis] = operandRow(in.b, live_, planes_, plane, numbers[1].data())[i];
+        }
+        if (dot(a, b) > sameSide * length(a) * length(b)) seconds ^= uint64_t{1} << i;
+    }
+    return seconds;
+}
+
 /// The operand that each point takes, plane by plane.
 void ChosenPaths::takeValues(const Instruction& in, const Choice& choice) const {
     alignas(vectorFloats * sizeof(float)) std::array<float, pathPoints> numbers[2];
-    const bool first = (choice.points & ~choice.values) != 0, second = (choice.points & choice.values) != 0;
     std::array<uint32_t, pathPoints> takesSecond;
-    if (first && second) spreadBits(choice.values, live_.count, takesSecond.data());
+    const uint64_t ofDerivatives = planes_ > 1 ? derivativesOfSecond(in, choice) : 0;
     for (size_t plane = 0; plane < planes_; ++plane) {
+        const uint64_t seconds = plane == 0 ? choice.values : ofDerivatives;
+        const bool first = (choice.points & ~seconds) != 0, second = (choice.points & seconds) != 0;
+        if (first && second && plane < 2) spreadBits(seconds, live_.count, takesSecond.data());
         const float* const a = operandRow(in.a, live_, planes_, plane, numbers[0].data());
         const float* const b = operandRow(in.b, live_, planes_, plane, numbers[1].data());
         float* const out = rowOf(live_, in.out, planes_, plane);

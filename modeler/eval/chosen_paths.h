@@ -28,6 +28,7 @@ private:
     void findLive(size_t n);
     void runLive(size_t n);
     Choice choiceOf(const Instruction& in) const;
+    uint64_t derivativesOfSecond(const Instruction& in, const Choice& choice) const;
     void takeValues(const Instruction& in, const Choice& choice) const;
 
     const Tape& tape_;

@@ -153,12 +153,7 @@ void evaluatePieces(const Tape& tape, Points points, const PieceSamples& out, Wo
             storeResult(tape, c, w.kernels.store, 4, plane, rows[plane] + first, n);
         names.store(out.labels + first, out.origins + first, n);
     };
-    if (tape.size() >= longTape) return followPaths(tape, points, w, 4, w.kernels.pieceGradients, store);
-    LabelPass pass(tape, w, 4);
-    runBlocks(
-        tape, points, w.kernels.pieceGradients, 4, w, {},
-        [&](const Instruction& in, const StepContext& c) { pass(in, c); },
-        [&](const StepContext& c, size_t first, size_t n) { store(c, pass, first, n); });
+    followPaths(tape, points, w, 4, w.kernels.pieceGradients, store);
 }
 
 RangeTrace::RangeTrace(std::shared_ptr<Pool> pool) : pool_(std::move(pool)) {

@@ -73,7 +73,7 @@ struct OwnerRegisters {
 
 /// What points take at a minimum or maximum, bit by bit, see ChosenPaths.
 struct Choice {
-    uint64_t values = 0;  ///< the second operand's value and derivatives
+    uint64_t values = 0;  ///< the second operand's value and, unless they tie, derivatives
     uint64_t names = 0;   ///< the second operand's name
     uint64_t points = 0;  ///< those that need the result
 };

@@ -172,6 +172,12 @@ uint64_t CrispBlock::evaluateEnds(eval::Workspace& workspace) {
     return samples_.size();
 }
 
+void CrispBlock::takeNormalsOfPieces(PageVector<Vec3f>& normals) const {
+    for (uint32_t p = 0; p < surface_->own; ++p)
+        if (const uint32_t point = points_.of[p]; point != 0)
+            if (const Vec3f n = normalized(points_.list[point - 1].gradient); n != Vec3f{}) normals[p] = n;
+}
+
 /// The piece at a vertex of a mixed cell.
 const PiecePoint& CrispBlock::pointAt(uint32_t place) {
     if (points_.of[place] == 0) {

@@ -41,6 +41,9 @@ public:
     bool hasCreases() const { return !mixed_.empty(); }
     /// The block's triangles with their labels, origins and corner normals; new own vertices.
     const PieceTriangles& triangles() const { return out_; }
+    /// Gives own vertices of the surface at which pieces were looked at the normals of their pieces: where several tie,
+    /// another's derivative may have been found before. `normals` begins with them.
+    void takeNormalsOfPieces(PageVector<Vec3f>& normals) const;
     /// Vertices inside faces on the block's sides, by axis: as own vertices on high sides, and how many are ghosts
     /// on low sides. Both blocks at a side list them in the same order.
     const std::vector<uint32_t>& shared(int axis) const { return border_.shared[static_cast<size_t>(axis)]; }

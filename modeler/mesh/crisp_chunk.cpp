@@ -72,6 +72,7 @@ void BlockMesher::splitAtCreases(const Block& block, Chunk& chunk) {
             chunk.labels[t] = vertices_.labels[surface.placeOf(chunk.triangles[t].x)];
         return;
     }
+    crisp_->takeNormalsOfPieces(chunk.normals);
     chunk.triangles.assign(split.triangles.begin(), split.triangles.end());
     chunk.labels.assign(split.labels.begin(), split.labels.end());
     chunk.origins.assign(split.origins.begin(), split.origins.end());

@@ -68,7 +68,10 @@ Result<Mesh> decimate(const Mesh& mesh, double ratio, Progress* progress) {
     return fromOpenMesh(half, false);
 }
 
-void turnNormalsOutward(Mesh& mesh) {
+void correctNormals(Mesh& mesh) {
+    constexpr float leastAgreement = .6f;  // cosine
+    constexpr float sliver = 1e-3f;        // height as a share of the longest edge
+    const auto square = [](Vec3f v) { return dot(v, v); };
     std::vector<const Chunk*> owners;  // by vertex of the whole mesh
     owners.reserve(mesh.vertexCount());
     for (const Chunk& c : mesh.chunks) owners.insert(owners.end(), c.positions.size(), &c);
@@ -82,13 +85,16 @@ void turnNormalsOutward(Mesh& mesh) {
             const auto place = [&](int k) {
                 return owners[corners[k]]->positions[corners[k] - owners[corners[k]]->firstVertex];
             };
-            const Vec3f face = normalized(cross(place(1) - place(0), place(2) - place(0)));
+            const Vec3f across = cross(place(1) - place(0), place(2) - place(0)), face = normalized(across);
+            const float longest =
+                std::max({square(place(1) - place(0)), square(place(2) - place(1)), square(place(0) - place(2))});
+            const float least = length(across) < sliver * longest ? 0 : leastAgreement;
             for (int k = 0; k < 3; ++k) {
                 const uint32_t corner = 3 * t + static_cast<uint32_t>(k);
                 const bool isOwn = own != chunk.cornerNormals.end() && own->corner == corner;
                 const Vec3f normal =
                     isOwn ? own->normal : owners[corners[k]]->normals[corners[k] - owners[corners[k]]->firstVertex];
-                if (dot(face, normal) < 0)
+                if (dot(face, normal) < least)
                     kept.push_back({corner, face});
                 else if (isOwn)
                     kept.push_back(*own);

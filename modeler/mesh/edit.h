@@ -17,9 +17,11 @@ Result<Mesh> smooth(const Mesh& mesh, int passes, Progress* progress);
 /// recomputed from faces. Error::Usage for another ratio, Error::Cancelled.
 Result<Mesh> decimate(const Mesh& mesh, double ratio, Progress* progress);
 
-/// Gives corners whose normal looks to the other side of their triangle the triangle's own, as beside parts thinner
-/// than a cell, where a vertex may have the normal of the face behind. O(triangles).
-void turnNormalsOutward(Mesh& mesh);
+/// Gives corners whose normal is more than 53 degrees off that of their triangle the triangle's own: beside parts
+/// thinner than a cell a vertex may have the normal of the face behind, and where faces of two parts meet within the
+/// tie margin (Tape::tieMargin) that of the other. Slivers have no direction to go by: there it is 90 degrees.
+/// O(triangles).
+void correctNormals(Mesh& mesh);
 
 /// Turns the surface round: triangles are wound and normals point the other way, as for a room seen from inside.
 void turnInsideOut(Mesh& mesh);

@@ -1,5 +1,6 @@
 #include "modeler/eval/chosen_paths.h"
 
+#include <bit>
 #include <limits>
 
 #include "samples.h"
@@ -52,9 +53,20 @@ Seen byPaths(const Tape& tape, const Cloud& cloud, size_t planes, const Step* st
     return seen;
 }
 
+/// Points whose derivatives, by the paths run last, are of another operand than their values.
+uint64_t tiedPoints(const Tape& tape, const Workspace& w) {
+    uint64_t tied = 0;
+    for (size_t i = 0; i < tape.size(); ++i)
+        if (field::traits(tape.code()[i].op).selects) {
+            const Choice& choice = w.impl().choices[i];
+            tied |= (choice.values ^ choice.names) & choice.points;
+        }
+    return tied;
+}
+
 TEST(ChosenPaths, GiveTheBitsOfAllInstructions) {
     Draws draws{20};
-    size_t selections = 0;
+    size_t selections = 0, ties = 0, points = 0;
     for (int round = 0; round < 400; ++round) {
         Graph graph;
         const NodeRef root = randomExpression(graph, 5 + draws.below(120), draws);
@@ -68,8 +80,10 @@ TEST(ChosenPaths, GiveTheBitsOfAllInstructions) {
         for (const size_t planes : {size_t{1}, size_t{4}}) {
             const Step* const steps = planes == 1 ? w.impl().kernels.values : w.impl().kernels.pieceGradients;
             const Seen expected = byAll(tape, cloud, planes, steps, w), got = byPaths(tape, cloud, planes, steps, w);
+            const uint64_t tied = tiedPoints(tape, w);
+            ties += static_cast<size_t>(std::popcount(tied)), points += cloud.size();
             for (size_t i = 0; i < cloud.size(); ++i) {
-                for (size_t plane = 0; plane < planes; ++plane)
+                for (size_t plane = 0; plane < (tied >> i & 1 ? 1 : planes); ++plane)
                     ASSERT_TRUE(sameBits(expected.rows[plane][i], got.rows[plane][i]))
                         << round << ": " << expected.rows[plane][i] << " but " << got.rows[plane][i];
                 ASSERT_EQ(expected.labels[i], got.labels[i]) << round;
@@ -78,6 +92,28 @@ TEST(ChosenPaths, GiveTheBitsOfAllInstructions) {
         }
     }
     EXPECT_GT(selections, 2000u);
+    EXPECT_LT(ties, points / 3);
+}
+
+/// The derivative along x of min(x, a x + b y) where the second operand is less by half of the tie margin.
+float alongFirst(float a, float b) {
+    Graph graph;
+    const NodeRef first = graph.x(), second = graph.x() * a + graph.y() * b;
+    const Tape tape = compile(graph, {min(first, second), {{-2, -2, -2}, {2, 2, 2}}, 1, 1}, graph.constants());
+    Workspace w;
+    const float x = 0, y = -tape.tieMargin() / 2 / b, z = 0;
+    float value, dx, dy, dz;
+    uint32_t label;
+    OriginId origin;
+    evaluatePieces(tape, {&x, &y, &z, 1}, {&value, &dx, &dy, &dz, &label, &origin}, w);
+    EXPECT_FLOAT_EQ(value, b * y);
+    return dx;
+}
+
+TEST(ChosenPaths, GiveTheDerivativesOfTheNameWhereTwoBendByLittle) {
+    EXPECT_EQ(alongFirst(.8f, .6f), 1);
+    EXPECT_EQ(alongFirst(.6f, .8f), .6f) << "53 degrees";
+    EXPECT_EQ(alongFirst(0, 1), 0);
 }
 
 }  // namespace

@@ -3,30 +3,77 @@
 
 #include <cmath>
 
-#include "grammar/pipeline/grids.h"
-#include "grammar/pipeline/load.h"
-#include "grammar/pipeline/mesh_edits.h"
-#include "grammar/pipeline/meshing.h"
 #include "modeler/core/conventions.h"
+#include "modeler/mesh/corners.h"
+#include "tests/pipeline/crisp_model.h"
 
 namespace sgm::pipeline {
 namespace {
 
-TEST(Rims, OfPrismsHaveNoChamfers) {
-    syntax::Diagnostics problems;
-    const auto grammar =
-        load("drum.sgm", "grammar 2\nterminal solid\nstart A -> size (40m, 12m, 40m) solid footprint ngon(64, 20m)\n",
-             problems);
-    ASSERT_TRUE(grammar);
+/// The usual mesh of a grammar 2 text.
+mesh::Mesh usualMesh(const std::string& text, int resolution) {
     Context context{nullptr, 2};
-    const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
-    const mesh::Grid grid = gridOf(*model, 512);
-    auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp}, context);
-    ASSERT_TRUE(meshed.ok());
-    const auto mesh = edited(std::move(meshed->mesh), {}, {model->tape, mesh::Surface::Crisp, grid.cell_m}, context);
-    ASSERT_TRUE(mesh.ok());
+    CrispModel made = crispModel("grammar 2\n" + text, resolution, context);
+    return made.edit({}, context).value();
+}
+
+struct Face {
+    Vec3f middle, normal;
+    float area_m2;
+};
+
+/// Calls `visit` with each triangle and the normal of each of its corners, but for slivers.
+template <class Visit>
+void eachFace(const mesh::Mesh& mesh, const Visit& visit) {
+    const auto triangles = mesh::gatherTriangles(mesh);
+    const mesh::CornerNormalTable corners = mesh::collectCornerNormals(mesh);
+    std::vector<Vec3f> positions, normals;
+    for (const mesh::Chunk& c : mesh.chunks) {
+        positions.insert(positions.end(), c.positions.begin(), c.positions.end());
+        normals.insert(normals.end(), c.normals.begin(), c.normals.end());
+    }
+    for (size_t t = 0; t < triangles.size(); ++t) {
+        const Vec3f a = positions[triangles[t].x], b = positions[triangles[t].y], c = positions[triangles[t].z];
+        const Vec3f across = cross(b - a, c - a);
+        const float longest = std::max({length(b - a), length(c - b), length(a - c)});
+        if (length(across) < .02f * longest * longest) continue;
+        for (int k = 0; k < 3; ++k) {
+            const bool isOwn = !corners.empty() && corners.of[t][k] != mesh::noIndex;
+            visit(Face{(a + b + c) * (1.0f / 3), normalized(across), length(across) / 2},
+                  isOwn ? corners.normals[corners.of[t][k]] : normals[triangles[t][k]]);
+        }
+    }
+}
+
+TEST(Rims, OfDrumsLeaveNormalsOfTheWalls) {
+    const mesh::Mesh mesh = usualMesh(
+        "start A -> cylinder size (4.2, 3, 4.2) + cylinder size (7m, .4m, 7m) at +y + cylinder size (9, 15, 9) at -y\n",
+        96);
+    eachFace(mesh, [](const Face& face, Vec3f normal) {
+        EXPECT_GT(dot(face.normal, normal), .6f) << face.middle.x << ' ' << face.middle.y << ' ' << face.middle.z;
+    });
+}
+
+TEST(Rims, OfDomesKeepTheNormalsOfTheirSegments) {
+    const mesh::Mesh mesh =
+        usualMesh("start A -> footprint round(48, 6m) extrude 4m B\nrule B -> domeRoof size (100%, 5m, 100%)\n", 128);
+    // Of a vertex on a crease whose block has no other part of it the piece isn't asked for.
+    double all_m2 = 0, others_m2 = 0;
+    eachFace(mesh, [&](const Face& face, Vec3f normal) {
+        if (std::abs(face.normal.y) > .9f) return;
+        const double across = std::atan2(face.normal.x, face.normal.z) - std::atan2(normal.x, normal.z);
+        all_m2 += face.area_m2;
+        if (std::abs(std::remainder(across, 2 * pi)) > radians(3)) others_m2 += face.area_m2;  // a segment spans 7.5
+    });
+    EXPECT_GT(all_m2, 100);
+    EXPECT_LT(others_m2, 1e-4 * all_m2);
+}
+
+TEST(Rims, OfPrismsHaveNoChamfers) {
+    const mesh::Mesh mesh =
+        usualMesh("terminal solid\nstart A -> size (40m, 12m, 40m) solid footprint ngon(64, 20m)\n", 512);
     const double apothem_m = 20 * std::cos(pi / 64);
-    for (const mesh::Chunk& chunk : mesh->chunks)
+    for (const mesh::Chunk& chunk : mesh.chunks)
         for (const Vec3f p : chunk.positions)
             EXPECT_GT(std::hypot(p.x, p.z), apothem_m - 1e-4) << p.x << ' ' << p.y << ' ' << p.z;
 }
