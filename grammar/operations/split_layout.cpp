@@ -212,7 +212,7 @@ void noteParts(PartsContext& context, const Parts& split, const std::vector<Piec
         }
         if (!isLeft && !isWished) continue;
         context.select(part.span, isLeft, [&] {
-            const Scope& root = context.place().tree->shapes[0].scope;
+            const derive::Scope& root = context.place().tree->shapes[0].scope;
             const bool isOfStart = context.scope().size == root.size && root.size == Vec3d{1, 1, 1};
             return derive::Explanation{
                 fmt::format("nothing is left of {:.4g}{} for this part", whole, split.byArea ? "m2" : "m"),

@@ -68,7 +68,9 @@ std::shared_ptr<Parts> checkTurtle(OperationChecker& checker, const syntax::Attr
             !c.repeated && c.label && c.label->kind == syntax::Expr::Kind::Name && c.label->text.size() == 1;
         if (!isLetter) {
             checker.error(c.label ? c.label->span : c.span, "a part of 'turtle' is called by a letter",
-                          "write 'F: cylinder'");
+                          c.label && c.label->kind == syntax::Expr::Kind::Name && !c.repeated
+                              ? fmt::format("write '{}: …'", c.label->text.substr(0, 1))
+                              : "write 'F: cylinder'");
             continue;
         }
         Parts::Part& part = out->parts.emplace_back();

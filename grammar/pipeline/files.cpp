@@ -76,6 +76,8 @@ std::string missingFile(const std::string& name, const fs::path& path) {
     for (const auto& entry : fs::directory_iterator(path.parent_path(), failed))
         if (entry.path().extension() == path.extension()) names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
+    if (fs::exists(standardLibrary() / fs::path(name).lexically_normal(), failed))
+        return fmt::format("there is no such file; did you mean \"std/{}\"?", name);
     const std::string near = syntax::didYouMean(path.filename().string(), names);
     const std::string folder = name.substr(0, name.find_last_of('/') + 1);
     return near.empty() ? "there is no such file"

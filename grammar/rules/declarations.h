@@ -19,6 +19,8 @@ void declareMap(CheckContext& ctx, const syntax::MapDecl& decl);
 void declareRoads(CheckContext& ctx, const syntax::RoadsDecl& decl);
 
 // What stands behind the names.
+/// Values for parameters as styles, checks and `use` set them; those with an error are left out.
+std::vector<Setting> checkSettings(CheckContext& ctx, const std::vector<syntax::Setting>& written);
 void checkParameters(CheckContext& ctx, const syntax::Ast& ast);
 void checkLets(CheckContext& ctx, const syntax::Ast& ast);
 void checkMaterials(CheckContext& ctx, const syntax::Ast& ast);

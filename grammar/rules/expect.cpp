@@ -73,13 +73,20 @@ bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_vi
         const std::string digits = fmt::format("{:.12g}", written->number);
         if (angle) hint = fmt::format("write '{}deg'", digits);
         if (want == Want::Length && value.type.like.units[0] == Unit::Share)
-            hint = fmt::format("write a length such as '{}m'", digits);
+            hint = what == "what follows '~'"
+                       ? fmt::format("write '{}%' for that share, or '~1' for a share of what the others leave", digits)
+                       : fmt::format("write a length such as '{:.12g}m'", written->number / 100);
     }
     const bool isSize = want == Want::Size || want == Want::Extent || want == Want::Length;
     if (isSize && written && written->kind == Written::Kind::Number && value.type.like.units[0] == Unit::Angle)
         hint = fmt::format("write a length such as '{:.12g}m'", written->number);
     if (want == Want::Size && value.type.like.kind == Value::Kind::Vector && value.type.like.count == 2)
         hint = "write all three, x, y and z, as in '(10, 1, 3)'";
+    const bool isTriple = value.type.like.kind == Value::Kind::Vector && value.type.like.count == 3;
+    if (isTriple && want == Want::Axis && written)
+        hint = fmt::format("write 'move {}' to place it freely", written->span.text());
+    if (isTriple && want == Want::Color && written)
+        hint = fmt::format("write 'rgb{}' with shares from 0 to 1, or '#rrggbb'", written->span.text());
     if (want == Want::Color && written && written->kind == Written::Kind::Text && written->text.starts_with('#'))
         hint = "leave the quotes out";
     if (want == Want::Count && value.type.like.kind == Value::Kind::Number && value.type.like.units[0] == Unit::None)

@@ -89,8 +89,7 @@ void noteInherited(CheckContext& ctx, const syntax::Expr& name) {
 }
 
 void collectNames(CheckContext& ctx, const syntax::Attribute& attribute) {
-    if (attribute.operation->traits.namesValue && !attribute.args.empty())
-        noteInherited(ctx, attribute.args[0]);
+    if (attribute.operation->traits.namesValue && !attribute.args.empty()) noteInherited(ctx, attribute.args[0]);
     collectNames(ctx, attribute.cases);
 }
 

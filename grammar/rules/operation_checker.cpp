@@ -94,7 +94,8 @@ void OperationChecker::checkArguments(const syntax::Attribute& written) {
                 if (auto suspect = findDoubtWithin(e, context_.params.defaults))
                     error(suspect->span, suspect->message + ", so " + outside, "keep what is divided by from 0");
                 else
-                    error(e.span, outside);
+                    error(e.span, outside,
+                          range.hi == 1 && v.n[i] > 1 && v.n[i] <= 100 ? fmt::format("write '{:g}%'", v.n[i]) : "");
             }
         });
     }

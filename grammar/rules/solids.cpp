@@ -9,6 +9,7 @@
 #include "grammar/rules/expressions.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
+#include "modeler/plan/edge_words.h"
 
 namespace sgm::rules {
 namespace {
@@ -266,6 +267,7 @@ Solid checkNamedSolid(CheckContext& ctx, Place& place, const Written& e) {
 std::string hintForSolid(CheckContext& ctx, std::string_view word) {
     for (const auto& [theirs, hint] : elsewhere)
         if (theirs == word) return std::string(hint);
+    if (plan::isCommonEdgeWord(word)) return "the parts of a block are set apart by '|'";
     const std::string file = ctx.files.declaring(std::string(word));
     if (!file.empty()) return fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
     std::vector<std::string> known = symbolNames(ctx, true);

@@ -62,10 +62,10 @@ std::vector<Case> readBlock(Cursor& cursor, std::string_view word, std::string_v
     return cases;
 }
 
-std::shared_ptr<Body> readBracedBody(Cursor& cursor, std::string_view where) {
+std::shared_ptr<Body> readBracedBody(Cursor& cursor, std::string_view where, std::string hint = {}) {
     auto body = std::make_shared<Body>();
     const Token open = cursor.peek();
-    if (!cursor.expect("{", where)) return body;
+    if (!cursor.expect("{", where, std::move(hint))) return body;
     *body = readBody(cursor);
     cursor.close(open);
     return body;
@@ -236,7 +236,9 @@ void readControl(Cursor& cursor, Element& element) {
     } else {
         element.over = readExpr(cursor);
     }
-    element.body = readBracedBody(cursor, "before the body of '" + plain(word) + "'");
+    const bool endsRule = element.kind == Element::Kind::When && cursor.at(Token::Kind::End);
+    element.body = readBracedBody(cursor, "before the body of '" + plain(word) + "'",
+                                  endsRule ? "a rule's own condition stands before '->': 'rule B when … -> …'" : "");
 }
 
 /// A shape begins the body behind its values.
@@ -278,9 +280,9 @@ void refuseStray(Cursor& cursor) {
                                                   quoted(", " + word) + " for one beside it"
                                             : nearestWord(cursor.operations(), word);
         cursor.fail(cursor.found() + " can't follow a shape",
-                    near.empty()
-                        ? "name an attribute (size, color …), join shapes with + - & morph, or list them with ','"
-                        : near);
+                    near.empty() ? "name an attribute (size, color …), 'of " + plain(word) +
+                                       "' for a material, join shapes with + - & morph, or list them with ','"
+                                 : near);
     } else if (cursor.at("(")) {
         cursor.fail("'(' can't follow a shape",
                     "write it without a blank before '(' for arguments, or join with an operator");
@@ -337,8 +339,15 @@ std::string nearestWord(const OperationTable& operations, std::string_view word)
 Body readBody(Cursor& cursor) {
     const uint32_t begin = cursor.peek().begin;
     Body body;
-    do body.siblings.push_back(readChain(cursor));
-    while (cursor.accept(","));
+    const auto isSmall = [&](size_t ahead) {
+        const std::string_view word = cursor.peekText(ahead);
+        return cursor.at(Token::Kind::Word, ahead) && word[0] >= 'a' && word[0] <= 'z';
+    };
+    do {
+        if (!body.siblings.empty() && isSmall(0) && cursor.at(":", 1) && isSmall(2))
+            cursor.fail("this part stands behind ','", "the parts of a block are set apart by '|'");
+        body.siblings.push_back(readChain(cursor));
+    } while (cursor.accept(","));
     body.span = cursor.since(begin);
     refuseStray(cursor);
     return body;

@@ -65,6 +65,8 @@ constexpr ForeignWord foreignAttributes[] = {
     {"r", "write 'turn'"},
     {"difference", "write 'a - b'"},
     {"union", "write 'a + b'"},
+    {"noise", "write 'displace billow(.05m, 2/m)' or 'displace fbm(.05m, 2/m, 4)'"},
+    {"fbm", "write 'displace fbm(.05m, 2/m, 4)'"},
     {"intersection", "write 'a & b'"},
 };
 
@@ -153,6 +155,17 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
             return Hint{cursor.span(axis), quoted(std::string(name) + std::string(before)) + " is no direction",
                         "write " + quoted(std::string(before) + std::string(name))};
     }
+    if (text == "or" && cursor.text(cursor.previous(3)) == "at")
+        return Hint{cursor.span(token), "'at' takes one joint", "write 'choose { 1: +x | 1: +z }' for either of them"};
+    if (token.kind == Token::Kind::Number && cursor.text(cursor.previous(2)) == "morph")
+        return Hint{cursor.span(token), quoted(text) + " can't follow a shape",
+                    "write " + quoted("by " + std::string(text))};
+    if (token.kind == Token::Kind::Number && before == "," && cursor.previous(2).kind == Token::Kind::Number &&
+        cursor.operations().find(cursor.text(cursor.previous(3))))
+        return Hint{cursor.span(token), "expected a shape, found " + quoted(text),
+                    "a vector stands in parentheses, as in " +
+                        quoted(std::string(cursor.text(cursor.previous(3))) + " (" +
+                               std::string(cursor.text(cursor.previous(2))) + ", " + std::string(text) + ", 1)")};
     if (text == "*" && message.starts_with("unexpected"))
         return Hint{cursor.span(token), "unexpected '*'",
                     "what two shapes share is 'a & b'; a calculation stands in parentheses"};

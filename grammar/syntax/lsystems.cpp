@@ -4,10 +4,21 @@
 
 namespace sgm::syntax {
 
+namespace {
+
+/// What stands from the cursor to the next blank: std/walls.sgm, F+F.
+std::string textToBlank(const Cursor& cursor) {
+    std::string text(cursor.peekText());
+    for (size_t i = 1; !cursor.at(Token::Kind::End, i) && cursor.peek(i).glued; ++i) text += cursor.peekText(i);
+    return text;
+}
+
+}  // namespace
+
 Expr readText(Cursor& cursor, std::string_view what) {
     if (!cursor.at(Token::Kind::Text))
         cursor.fail("expected " + std::string(what) + " in quotes, found " + cursor.found(),
-                    cursor.at(Token::Kind::Word) ? "write '\"" + std::string(cursor.peekText()) + "\"'" : "");
+                    cursor.at(Token::Kind::Word) ? "write '\"" + textToBlank(cursor) + "\"'" : "");
     return readArgument(cursor);
 }
 
