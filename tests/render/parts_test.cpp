@@ -15,6 +15,7 @@
 #include "viewer/render/camera.h"
 #include "viewer/render/cells.h"
 #include "viewer/render/picture.h"
+#include "viewer/render/prepared_field.h"
 #include "viewer/render/scene.h"
 #include "viewer/render/shader_text.h"
 
@@ -37,6 +38,20 @@ float valueOf(const eval::Tape& tape, Vec3f p) {
     float value = 0;
     eval::evaluate(tape, {&p.x, &p.y, &p.z, 1}, &value, workspace);
     return value;
+}
+
+TEST_F(Parts, ACoatThinnerThanAProbeOwnsItsSurface) {
+    Scene scene;
+    scene.add("cube", {0, 0, 0}, {3, 1, 3}, {1, 1, 1});
+    scene.add("cube", {0, 1, 0}, {2, .002, 2}, {1, 0, 0});  // 2 mm above the other
+    const field::Field field = scene.sum();
+    const auto prepared = prepareField(scene.compile(field), field.bounds, scene.provenance, 2, nullptr);
+    ASSERT_TRUE(prepared.ok());
+    const auto probe = [](float x, float from, float to) { return PreparedField::Probe{{x, from, .5f}, {x, to, .5f}}; };
+    EXPECT_EQ(
+        prepared->originsOf({probe(.5f, 1.003f, .993f), probe(2.5f, 1.003f, .993f), probe(.5f, 1.0015f, .9915f)}, 2),
+        (std::vector<OriginId>{2, 1, 1}))
+        << "on the coat, beside it, and from within it";
 }
 
 TEST_F(Parts, CellsKnowTheFieldExactly) {

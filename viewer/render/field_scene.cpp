@@ -59,20 +59,21 @@ Status FieldScene::ask(Tracer::What what, const std::vector<uint32_t>& which, Ra
     return Done{};
 }
 
-/// Hits lie a little before their surface, where an edge of another part that ends in it may be as near; behind it the
-/// surface's own part is deepest. Behind is where the normal says, for a slanting ray passes into the part beside it;
-/// or along the ray while no normal is known.
+/// Hits lie a little before their surface, where an edge of another part that ends in it may be as near; right behind
+/// it the surface's own part is deepest. Behind is where the normal says, for a slanting ray passes into the part
+/// beside it; or along the ray while no normal is known.
 void FieldScene::findOrigins(const std::vector<uint32_t>& which, Rays& rays) const {
-    std::vector<Vec3f> places;
+    std::vector<PreparedField::Probe> probes;
     std::vector<uint32_t> of;
     for (const uint32_t i : which) {
         if (rays.hits[i].kind() != HitKind::Object) continue;
         of.push_back(i);
         const Vec3f ahead = rays.hits[i].position - view_.eye.as<float>(), normal = rays.shadings[i].normal;
         const Vec3f behind = normal == Vec3f{} ? ahead : normal * std::min(dot(normal, ahead), -0.6f * length(ahead));
-        places.push_back(rays.hits[i].position + (0.4f * static_cast<float>(view_.pixelAngle)) * behind);
+        const Vec3f at = rays.hits[i].position;
+        probes.push_back({at, at + (0.4f * static_cast<float>(view_.pixelAngle)) * behind});
     }
-    const std::vector<OriginId> origins = field_->originsOf(places, threads_);
+    const std::vector<OriginId> origins = field_->originsOf(probes, threads_);
     for (size_t k = 0; k < of.size(); ++k) rays.origins[of[k]] = origins[k];
 }
 

@@ -30,15 +30,15 @@ float PreparedField::sideOf(Vec3f eye) const {
 }
 
 /// Places are gathered by cell and asked on the cell's own tape.
-std::vector<OriginId> PreparedField::originsOf(const std::vector<Vec3f>& places, int threads) const {
+std::vector<OriginId> PreparedField::originsOf(const std::vector<Probe>& probes, int threads) const {
     const auto whole =
         static_cast<uint32_t>(tree.tapes.size());  // the field's own tape, for places beside every near cell
     struct Member {
         uint32_t tape, place;
     };
-    std::vector<Member> members(places.size());
-    for (uint32_t i = 0; i < places.size(); ++i) {
-        const uint32_t word = tree.find(places[i]);
+    std::vector<Member> members(probes.size());
+    for (uint32_t i = 0; i < probes.size(); ++i) {
+        const uint32_t word = tree.find(probes[i].to);
         members[i] = {CellTree::stateOf(word) == CellState::Near ? CellTree::indexOf(word) : whole, i};
     }
     std::stable_sort(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.tape < b.tape; });
@@ -46,22 +46,26 @@ std::vector<OriginId> PreparedField::originsOf(const std::vector<Vec3f>& places,
     for (size_t i = 0; i < members.size(); ++i)
         if (i == 0 || members[i].tape != members[i - 1].tape) starts.push_back(i);
     starts.push_back(members.size());
-    std::vector<OriginId> all(places.size(), 0);
+    std::vector<OriginId> all(probes.size(), 0);
     const size_t groups = starts.size() - 1;
     constexpr size_t fewGroups = 64;  // a thread takes so many at a time
     std::vector<eval::Workspace> workspaces(std::min(size_t(threadCount(threads)), groups / fewGroups + 1));
     const auto askGroup = [&](size_t g, eval::Workspace& workspace) {
-        std::vector<float> x, y, z;
-        for (size_t i = starts[g]; i < starts[g + 1]; ++i) {
-            const Vec3f& p = places[members[i].place];
-            x.push_back(p.x);
-            y.push_back(p.y);
-            z.push_back(p.z);
-        }
-        std::vector<OriginId> origins(x.size());
+        const size_t n = starts[g + 1] - starts[g];
+        std::vector<float> x(2 * n), y(2 * n), z(2 * n), values(2 * n);  // ends, then beginnings
+        const auto put = [&](size_t k, Vec3f p) { x[k] = p.x, y[k] = p.y, z[k] = p.z; };
+        const auto probeOf = [&](size_t k) -> const Probe& { return probes[members[starts[g] + k].place]; };
+        for (size_t k = 0; k < n; ++k) put(k, probeOf(k).to), put(n + k, probeOf(k).from);
         const uint32_t number = members[starts[g]].tape;
-        eval::evaluateOrigin(number < whole ? tree.tapes[number] : tape, {x.data(), y.data(), z.data(), x.size()},
-                             origins.data(), workspace);
+        const eval::Tape& own = number < whole ? tree.tapes[number] : tape;
+        eval::evaluate(own, {x.data(), y.data(), z.data(), 2 * n}, values.data(), workspace);
+        for (size_t k = 0; k < n; ++k) {
+            const float from = values[n + k], to = values[k];
+            if ((from < 0) == (to < 0)) continue;
+            put(k, probeOf(k).from + (probeOf(k).to - probeOf(k).from) * std::min(from / (from - to) + 0.05f, 1.0f));
+        }
+        std::vector<OriginId> origins(n);
+        eval::evaluateOrigin(own, {x.data(), y.data(), z.data(), n}, origins.data(), workspace);
         for (size_t k = 0; k < origins.size(); ++k)
             all[members[starts[g] + k].place] = origins[k] < materialOf.size() ? origins[k] : 0;
     };

@@ -21,11 +21,17 @@ struct PreparedField {
     std::vector<uint32_t> materialOf;  ///< by OriginId
     SurfaceTextures textures;
 
+    /// A way through a surface: from before it to behind it, metres.
+    struct Probe {
+        Vec3f from, to;
+    };
+
     float inverseLipschitz() const { return 1.0f / std::max(tape.lipschitz(), 1e-6f); }
     /// 1; −1 where `eye` stands inside the solid, which is then drawn inside out.
     float sideOf(Vec3f eye) const;
-    /// Whose surface each place lies on; 0 where no part owns it.
-    std::vector<OriginId> originsOf(const std::vector<Vec3f>& places, int threads) const;
+    /// Whose surface each probe meets: asked a twentieth of its way behind where the field changes its sign, at its end
+    /// where it doesn't. 0 where no part owns it.
+    std::vector<OriginId> originsOf(const std::vector<Probe>& probes, int threads) const;
 };
 
 /// Cuts space into cells, at most `levels` deep. The errors of SurfaceTextures::create.
