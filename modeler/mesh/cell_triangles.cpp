@@ -8,7 +8,6 @@ namespace sgm::mesh {
 namespace {
 
 constexpr uint32_t mostSmall = 6;      ///< nodes of a polygon whose ears lie beside each other
-constexpr double alongside = .1;       ///< cosine between a polygon and the derivative of a piece that it lies along
 constexpr double leastSquare = 1e-16;  ///< of the sine between a plane and the way to a point beside it
 
 double square(Vec3d v) { return dot(v, v); }
@@ -70,20 +69,18 @@ size_t CellPieces::bestEar(Vec3d normal) const {
 
 /// Cuts ears off, the best shaped first. False where none is left that faces outward.
 bool CellPieces::triangulatePolygon(const Polygon& polygon, PieceTriangles& out) {
-    Vec3d expected{}, beside{};
+    Vec3d expected{};
     ring_.clear();
     for (uint32_t i = polygon.first; i < polygon.end; ++i) {
         ring_.emplace_back(i, nodes_[i].at.as<double>());
-        for (const PiecePoint* side : nodes_[i].sides)
-            (side->label == polygon.label ? expected : beside) += normalized(side->gradient.as<double>());
+        if (const PiecePoint& side = sideOf(nodes_[i], polygon.label); side.label == polygon.label)
+            expected += normalized(side.gradient.as<double>());
     }
     Vec3d sum{};
     for (size_t i = 1; i + 1 < ring_.size(); ++i)
         sum += cross(ring_[i].second - ring_[0].second, ring_[i + 1].second - ring_[0].second);
+    if (!(dot(sum, expected) > 0)) return false;
     const Vec3d n = normalized(sum);
-    // The corner of a piece that ends on a grid edge may lie all within the plane of the piece beside it.
-    const bool isWithinOther = std::abs(dot(n, normalized(expected))) < alongside && dot(n, beside) > 0;
-    if (!(dot(n, expected) > 0) && !isWithinOther) return false;
     const Vec3f normal = n.as<float>();
     cell_.normals.push_back(n);
     const auto cut = [&](size_t before, size_t at, size_t after) {
@@ -177,10 +174,9 @@ void CellPieces::fan(uint32_t l, Vec3f middleOfAll, float apart, PieceTriangles&
         const Polygon piece{0, 0, a.label, a.origin};
         const PiecePoint& side = sideOf(a, a.label);
         const Vec3f own = side.label == a.label ? normalized(side.gradient) : Vec3f{};
-        const Vec3f across =
-            normalized(cross(a.at.as<double>() - middle.at.as<double>(), b.at.as<double>() - middle.at.as<double>()))
-                .as<float>();
-        emit(middle, a, b, piece, own == Vec3f{} || dot(own, across) < -0.5f ? across : own, out);
+        const Vec3d across =
+            cross(a.at.as<double>() - middle.at.as<double>(), b.at.as<double>() - middle.at.as<double>());
+        emit(middle, a, b, piece, own == Vec3f{} ? normalized(across).as<float>() : own, out);
     }
 }
 
