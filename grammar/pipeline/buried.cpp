@@ -12,7 +12,12 @@ Result<std::vector<MeshWarning>> buriedWarnings(const Model& model, const mesh::
     if (!buried.ok()) return buried.error();
     std::vector<MeshWarning> warnings;
     for (const lower::BuriedParts& parts : *buried) {
-        if (warnings.size() == most) break;
+        if (warnings.size() == most) {
+            const size_t left = buried->size() - most;
+            warnings.push_back(
+                {{}, {}, fmt::format("parts of {} more line{} add nothing", left, left == 1 ? "" : "s")});
+            break;
+        }
         const Part& part = model.lowered->provenance.parts[parts.first];
         const bool one = parts.count == 1;
         warnings.push_back(

@@ -30,12 +30,16 @@ TEST(Editor, AnswersOnTheStreamsAndEnds) {
         {{"jsonrpc", "2.0"},
          {"method", "textDocument/didOpen"},
          {"params", {{"textDocument", {{"uri", uri}, {"version", 1}, {"text", "grammar 1\nstart A -> spere\n"}}}}}});
+    // Long enough that others arrive while one is checked, however the threads are scheduled.
+    std::string text = "grammar 1\nstart A -> sphere : B0\n";
+    for (int i = 0; i < 1000; ++i)
+        text += "rule B" + std::to_string(i) + " -> + cube at +x : B" + std::to_string(i + 1) + "\n";
     for (int version = 2; version < 40; ++version)
-        input += framed({{"jsonrpc", "2.0"},
-                         {"method", "textDocument/didChange"},
-                         {"params",
-                          {{"textDocument", {{"uri", uri}, {"version", version}}},
-                           {"contentChanges", {{{"text", "grammar 1\nstart A -> sphere\n"}}}}}}});
+        input += framed(
+            {{"jsonrpc", "2.0"},
+             {"method", "textDocument/didChange"},
+             {"params",
+              {{"textDocument", {{"uri", uri}, {"version", version}}}, {"contentChanges", {{{"text", text}}}}}}});
     input += framed({{"jsonrpc", "2.0"},
                      {"id", 2},
                      {"method", "textDocument/hover"},
