@@ -42,7 +42,7 @@ Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, Mes
         pipeline::edited(std::move(meshed.mesh), request.edits, {model.tape, request.grid.surface, cell_m}, context);
     if (!mesh.ok()) return mesh;
     if (mesh->triangleCount() == 0 && scene.empty() && !allFiles(request.out).empty())
-        return pipeline::noSurface(model, cell_m);
+        return withOptions(pipeline::noSurface(model, cell_m));
     const double left = before > 0 ? static_cast<double>(mesh->triangleCount()) / before : 0;
     if (request.edits.simplify < 1 && left > request.edits.simplify && !request.quiet)
         printMessage(

@@ -208,4 +208,9 @@ int fail(const Error& error) {
     return 1;
 }
 
+Error withOptions(Error error) {
+    error.message += " (--cell, --resolution)";
+    return error;
+}
+
 }  // namespace sgm::cli

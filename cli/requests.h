@@ -95,6 +95,9 @@ mesh::Grid gridOver(const Model& model, const GridRequest& request);
 Result<MeshedModel> makeMesh(const Model& model, const GridRequest& request, Context& context,
                              bool positionsOnly = false);
 
+/// The error with the options that say how fine a mesh is.
+Error withOptions(Error error);
+
 /// Prints "sgm: …" to stderr unless the error was reported already, and gives the exit code: 1 input, 2 usage, 3
 /// budget, 130 cancelled.
 int fail(const Error& error);

@@ -132,9 +132,12 @@ private:
         auto derivation = derive::derive(grammar_, options, progress_);
         if (!derivation.ok()) return derivation.error();
         syntax::Diagnostics found;
-        if (thorough)
+        if (thorough) {
+            // What another start picked something by isn't told of this one.
+            selections_.add(derivation->selections);
+            derivation->selections = selections_;
             found = derive::warnings(*derivation);
-        else
+        } else
             for (const derive::Warning& r : derivation->warnings) found.warning(r.span, r.message, r.hint);
         for (const syntax::Diagnostic& d : found.all())
             if (warned_.insert({d.span.source, d.span.begin, d.span.end}).second)
@@ -155,7 +158,7 @@ private:
         const auto meshed = makeMesh(model, options_.grid, context);
         if (!meshed.ok()) return meshed.error();
         if (meshed->mesh.triangleCount() == 0 && model.derivation.objects.empty())
-            return pipeline::noSurface(model, meshed->grid.cell_m);
+            return withOptions(pipeline::noSurface(model, meshed->grid.cell_m));
         const auto found = pipeline::meshWarnings(model, meshed->mesh, meshed->grid, context);
         if (!found.ok()) return found.error();
         // Where the cells lack parts, what seems to hang over a gap may stand on them.
@@ -206,6 +209,7 @@ private:
     Progress* progress_;
     syntax::Diagnostics& diagnostics_;
     std::vector<pipeline::MeshWarning> ofCells_;
+    derive::Selections selections_;                                           ///< of all starts so far
     std::set<Key> said_;                                                      ///< errors
     std::set<std::tuple<const syntax::Source*, uint32_t, uint32_t>> warned_;  ///< places: one warning each
 };

@@ -68,7 +68,7 @@ struct DerivationInput {
     uint64_t seed = 0;
     bool isPlaced = false;    ///< it is an object of another model, and stands on no ground of its own
     bool planAlone = false;   ///< made with Options::planAlone
-    bool isAlongWay = false;  ///< made by the steps of a `derive` way: what is left live may be meant so
+    bool isAlongWay = false;  ///< made step by step, as by a `derive` way: what is left live may be meant so
 };
 
 /// What a derivation counted.

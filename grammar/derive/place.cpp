@@ -4,6 +4,7 @@
 
 #include "grammar/derive/interpreter.h"
 #include "grammar/derive/joint_choice.h"
+#include "grammar/rules/lookup.h"
 #include "modeler/core/random.h"
 
 namespace sgm::derive {
@@ -32,7 +33,8 @@ std::optional<Scope> changedScope(const std::vector<Attribute>& prefix, Place pl
         a.operation->apply(context, a);
         if (out.vanishes) return std::nullopt;
         all.extras.values.insert(all.extras.values.end(), out.extras.values.begin(), out.extras.values.end());
-        all.ownsFootprint = out.ownsFootprint;
+        // In grammar 1 an absolute size takes a plan away that stands before it.
+        all.ownsFootprint = out.ownsFootprint && rules::versionOf(*place.builder->derivation().grammar, a.span) >= 2;
         place.scope = out.scope;
         place.scope.centre += out.moved_m + out.grown_m;
     }

@@ -22,6 +22,7 @@ Result<std::shared_ptr<Session::State>> Session::begun(std::shared_ptr<const rul
                                                        const Options& options, Progress* progress) {
     auto empty = emptyDerivation(grammar, options);
     if (!empty.ok()) return empty.error();
+    empty->isAlongWay = true;
     auto state = std::make_shared<State>(std::move(*empty), options, progress);
     state->rewriter.start(grammar->starts[options.start], options);
     if (state->builder.monitor().failed()) return state->builder.monitor().takeFailure();

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "grammar/derive/derive.h"
+#include "grammar/rules/evaluate.h"
 
 namespace sgm::derive {
 
@@ -37,6 +38,21 @@ bool isEmpty(const ShapeTree& tree, ShapeId id) {
            (!extras || extras->object == none);
 }
 
+/// Whether the shape ends a recursion: one above it has its symbol.
+bool isWithinOwn(const ShapeTree& tree, ShapeId id) {
+    const rules::SymbolId symbol = tree.shapes[id].symbol;
+    for (ShapeId above = tree.shapes[id].parent; above != none; above = tree.shapes[above].parent)
+        if (tree.shapes[above].symbol == symbol) return true;
+    return false;
+}
+
+/// Whether an element of the rule met a closed joint.
+bool isClosed(const Derivation& derivation, const rules::Rule& rule) {
+    return std::any_of(derivation.closed.begin(), derivation.closed.end(), [&](const Closed& c) {
+        return c.span.source == rule.span.source && c.span.begin >= rule.span.begin && c.span.end <= rule.span.end;
+    });
+}
+
 }  // namespace
 
 syntax::Diagnostics unmatched(const Derivation& derivation) {
@@ -47,18 +63,20 @@ syntax::Diagnostics unmatched(const Derivation& derivation) {
     for (ShapeId s = 0; s != none && !derivation.tree.shapes.empty(); s = derivation.tree.next(s)) {
         if (!derivation.tree.shapes.record(s).live || !isEmpty(derivation.tree, s)) continue;
         const rules::SymbolId symbol = derivation.tree.shapes[s].symbol;
-        if (symbol != rules::none) first.try_emplace(symbol, s);
+        if (symbol != rules::none && !isWithinOwn(derivation.tree, s)) first.try_emplace(symbol, s);
     }
     for (const auto& [id, shape] : first) {
         const rules::Symbol& symbol = grammar.symbols[id];
-        const auto isConditional = [&](uint32_t r) {
-            return grammar.rules[r].when || grammar.rules[r].beside != rules::none;
+        // What a rule without a condition doesn't match has closed joints, of which `ungrown` tells; what parameters
+        // decide is a switch.
+        const auto asksTheShape = [&](uint32_t r) {
+            const rules::Rule& rule = grammar.rules[r];
+            return rule.when && rule.beside == rules::none && !rules::fold(*rule.when, derivation.params) &&
+                   !isClosed(derivation, rule);
         };
-        // What a rule without a condition doesn't match has closed joints, of which `ungrown` tells.
-        if (symbol.rules.empty() || !std::all_of(symbol.rules.begin(), symbol.rules.end(), isConditional)) continue;
+        if (symbol.rules.empty() || !std::all_of(symbol.rules.begin(), symbol.rules.end(), asksTheShape)) continue;
         const rules::Rule& rule = grammar.rules[symbol.rules[0]];
-        warnings.warning(rule.when ? rule.when->span : rule.span,
-                         fmt::format("a '{}' that no rule matches stays empty", symbol.name),
+        warnings.warning(rule.when->span, fmt::format("a '{}' that no rule matches stays empty", symbol.name),
                          fmt::format("the first is '{0}'; add 'rule {1} -> …' for it, or 'rule {1} -> nil' where "
                                      "nothing is meant",
                                      derivation.tree.path(shape), symbol.name));

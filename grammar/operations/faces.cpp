@@ -182,7 +182,7 @@ private:
     /// Parts that no face gets are told. A party wall comes of what stands beside, which may be missing.
     void noteWords(const std::vector<Face>& faces) const {
         for (const Part& part : faces_.parts) {
-            if (isLevelWord(part.label) || part.label == "shared") continue;
+            if (isLevelWord(part.label) || part.label == "shared" || part.label == "side") continue;
             const bool found =
                 std::any_of(faces.begin(), faces.end(), [&](const Face& face) { return face.part == &part; });
             context_.select(part.span, found, [&] {

@@ -194,24 +194,20 @@ std::optional<double> nearest(const std::vector<double>& lines, const std::vecto
     return best;
 }
 
-/// Whether a part is `part` or one of those that it repeats.
-bool holds(const Part& part, const Part* other) {
-    return &part == other || std::any_of(part.repeated.begin(), part.repeated.end(),
-                                         [&](const Part& inner) { return holds(inner, other); });
+/// Whether a part is `nil` alone.
+bool isNil(const Part& part) {
+    if (!part.body || part.body->siblings.size() != 1 || part.body->siblings[0].size() != 1) return false;
+    const rules::Solid* solid = part.body->siblings[0][0].content.solid();
+    return solid && solid->kind == rules::Solid::Kind::Nil;
 }
 
-/// Notes of the parts that give way, or repeat as often as they fit, whether anything is left for them.
+/// Notes of the parts that give way whether anything is left for them.
 void noteParts(PartsContext& context, const Parts& split, const std::vector<Piece>& pieces, double whole) {
     for (const Part& part : split.parts) {
-        if (!part.floating && !isFill(part)) continue;
-        bool isLeft = false, isWished = isFill(part);
-        for (const Piece& piece : pieces) {
-            if (isLeft || !holds(part, piece.part)) continue;
-            isLeft = piece.to - piece.from > leastPart;
-            isWished = isWished || piece.length.wished() > leastPart;
-        }
-        if (!isLeft && !isWished) continue;
-        context.select(part.span, isLeft, [&] {
+        if (!part.floating || isNil(part)) continue;
+        const auto piece = std::find_if(pieces.begin(), pieces.end(), [&](const Piece& p) { return p.part == &part; });
+        if (piece == pieces.end() || piece->length.wished() <= leastPart) continue;
+        context.select(part.span, piece->to - piece->from > leastPart, [&] {
             const derive::Scope& root = context.place().tree->shapes[0].scope;
             const bool isOfStart = context.scope().size == root.size && root.size == Vec3d{1, 1, 1};
             return derive::Explanation{

@@ -79,7 +79,7 @@ std::shared_ptr<Parts> checkTurtle(OperationChecker& checker, const syntax::Attr
         checker.beginDraws("part");
         part.body = c.body ? checker.partBody(*c.body) : std::make_shared<const rules::Body>();
     }
-    if (out->index != rules::none) warnOfUnusedParts(checker, *out);
+    if (out->index != rules::none && !checker.hasErrors()) warnOfUnusedParts(checker, *out);
     return out;
 }
 

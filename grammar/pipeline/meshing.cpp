@@ -31,17 +31,20 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::P
 
 Error noSurface(const Model& model, float cell_m) {
     double thickest_m = 0;
-    for (const derive::Shape& shape : model.derivation.tree.shapes)
+    bool isCut = false;
+    for (const derive::Shape& shape : model.derivation.tree.shapes) {
+        isCut = isCut || shape.op == rules::Operator::Difference || shape.op == rules::Operator::Intersection;
         if (shape.solid != derive::none) thickest_m = std::max(thickest_m, minComponent(shape.scope.size));
+    }
     const std::string place = syntax::placeText(model.derivation.tree.shapes[0].span);
-    if (thickest_m > cell_m)
-        return {Error::Kind::Input, fmt::format("{}there is no surface at cells of {:.3g} m: all is cut away, or what "
-                                                "is left is thinner than a cell (--cell, --resolution)",
-                                                place, cell_m)};
+    if (isCut || thickest_m > cell_m)
+        return {Error::Kind::Input,
+                fmt::format("{}there is no surface at cells of {:.3g} m: all is cut away, or thinner than a cell",
+                            place, cell_m)};
     return {Error::Kind::Input,
-            fmt::format("{}there is no surface at cells of {:.3g} m, for no part is thicker than {:.3g} m: --cell "
-                        "{:.3g} holds such parts",
-                        place, cell_m, thickest_m, thickest_m / 2)};
+            fmt::format("{}there is no surface at cells of {:.3g} m, for no part is thicker than {:.3g} m: cells of "
+                        "half of that hold such parts",
+                        place, cell_m, thickest_m)};
 }
 
 Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, Context& context) {

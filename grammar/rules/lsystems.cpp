@@ -130,7 +130,7 @@ void checkLsystem(CheckContext& ctx, const syntax::LsystemDecl& decl) {
     if (out.axiom.empty() && decl.axiom.kind == syntax::Expr::Kind::Text)
         ctx.diagnostics.error(decl.axiom.span, "an axiom has at least one letter", "write 'axiom \"F+F+F+F\"'");
     for (const auto& written : decl.productions) checkProduction(ctx, written, out);
-    warnOfUnusedProductions(out, ctx.diagnostics);
+    if (!ctx.diagnostics.hasErrors()) warnOfUnusedProductions(out, ctx.diagnostics);
 }
 
 }  // namespace

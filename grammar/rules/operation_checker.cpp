@@ -95,7 +95,9 @@ void OperationChecker::checkArguments(const syntax::Attribute& written) {
                     error(suspect->span, suspect->message + ", so " + outside, "keep what is divided by from 0");
                 else
                     error(e.span, outside,
-                          range.hi == 1 && v.n[i] > 1 && v.n[i] <= 100 ? fmt::format("write '{:g}%'", v.n[i]) : "");
+                          range.hi == 1 && v.units[0] == Unit::None && v.n[i] >= 10 && v.n[i] <= 100
+                              ? fmt::format("write '{:g}%'", v.n[i])
+                              : "");
             }
         });
     }
@@ -264,6 +266,8 @@ void OperationChecker::unknownName(SourceSpan span, const std::string& name, std
 }
 
 bool OperationNames::areErrorsSuppressed(const std::string& name) const { return context_.suppressed.contains(name); }
+bool OperationChecker::hasErrors() const { return context_.diagnostics.hasErrors(); }
+
 size_t OperationChecker::problemCount() const { return context_.diagnostics.all().size(); }
 
 }  // namespace sgm::rules

@@ -108,6 +108,7 @@ public:
     /// An error about a name, silent where the name stands in a text that could not be read.
     void unknownName(SourceSpan span, const std::string& name, std::string message, std::string fix = {});
     size_t problemCount() const;
+    bool hasErrors() const;
 
 private:
     CheckContext& context_;

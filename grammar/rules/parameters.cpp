@@ -38,42 +38,32 @@ void takeAngles(std::initializer_list<Value*> values) {
 }
 
 /// Calls `visit` with every number of a value that is no calculation: 3cm, -3cm, (1, 2, 3).
-template <class Expr, class Visit>
-void eachNumber(Expr& e, const Visit& visit) {
+template <class Visit>
+void eachNumber(const Written& e, const Visit& visit) {
     if (e.kind == Written::Kind::Number) visit(e);
     const bool holdsNumbers = e.kind == Written::Kind::Tuple || e.kind == Written::Kind::Range ||
                               (e.kind == Written::Kind::Unary && e.text == "-");
     if (holdsNumbers)
-        for (auto& arg : e.args) eachNumber(arg, visit);
+        for (const Written& arg : e.args) eachNumber(arg, visit);
 }
 
-/// Plain numbers beside centimetres, millimetres or kilometres are such too. An error where two of them stand.
-void takeLengths(CheckContext& ctx, std::initializer_list<Written*> values) {
-    std::string unit, other;
-    const Written* plain = nullptr;
-    const auto note = [&](const Written& number) {
-        if (number.unit.empty() && number.number != 0) plain = &number;
-        if (number.unit.empty() || number.unit == unit) return;
-        (unit.empty() ? unit : other) = number.unit;
-    };
-    for (const Written* value : values) eachNumber(*value, note);
-    if (unit != "cm" && unit != "mm" && unit != "km" && other != "cm" && other != "mm" && other != "km") return;
-    if (!other.empty()) {
-        if (plain)
-            ctx.diagnostics.error(
-                plain->span, fmt::format("'{:g}' stands beside {} and {}", plain->number, unit, other),
-                fmt::format("say its unit: '{:g}{}' or '{:g}{}'", plain->number, unit, plain->number, other));
-        return;
-    }
-    for (Written* value : values)
-        eachNumber(*value, [&](Written& number) {
-            if (number.unit.empty()) number.unit = unit;
+/// Plain numbers are metres, which is hardly meant beside centimetres, millimetres or kilometres.
+void warnOfPlainLengths(CheckContext& ctx, std::initializer_list<const Written*> values) {
+    std::string unit;
+    std::vector<const Written*> plain;
+    for (const Written* value : values)
+        eachNumber(*value, [&](const Written& number) {
+            if (number.unit == "cm" || number.unit == "mm" || number.unit == "km") unit = number.unit;
+            if (number.unit.empty() && number.number != 0) plain.push_back(&number);
         });
+    if (unit.empty()) return;
+    for (const Written* number : plain)
+        ctx.diagnostics.warning(number->span, fmt::format("'{0:g}' beside {1} is {0:g}m", number->number, unit),
+                                fmt::format("say its unit: '{0:g}{1}' or '{0:g}m'", number->number, unit));
 }
 
-void checkParameter(CheckContext& ctx, const syntax::ParamDecl& written) {
-    syntax::ParamDecl decl = written;
-    if (decl.range) takeLengths(ctx, {&decl.value, &*decl.range});
+void checkParameter(CheckContext& ctx, const syntax::ParamDecl& decl) {
+    if (decl.range) warnOfPlainLengths(ctx, {&decl.value, &*decl.range});
     Param& param = ctx.grammar.params[ctx.names.params.at(decl.name.text)];
     param.label = decl.label;
     param.group = decl.group;

@@ -267,12 +267,12 @@ Solid checkNamedSolid(CheckContext& ctx, Place& place, const Written& e) {
 std::string hintForSolid(CheckContext& ctx, std::string_view word) {
     for (const auto& [theirs, hint] : elsewhere)
         if (theirs == word) return std::string(hint);
-    if (plan::isCommonEdgeWord(word)) return "the parts of a block are set apart by '|'";
     const std::string file = ctx.files.declaring(std::string(word));
     if (!file.empty()) return fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
     std::vector<std::string> known = symbolNames(ctx, true);
     for (const field::Primitive& row : field::primitives()) known.emplace_back(row.name);
     std::string near = nearestHint(word, known);
+    if (near.empty() && plan::isCommonEdgeWord(word)) return "the parts of a block are set apart by '|'";
     return near.empty() && isNonTerminal(word) ? fmt::format("write 'rule {} -> …'", word) : near;
 }
 

@@ -339,12 +339,14 @@ std::string nearestWord(const OperationTable& operations, std::string_view word)
 Body readBody(Cursor& cursor) {
     const uint32_t begin = cursor.peek().begin;
     Body body;
-    const auto isSmall = [&](size_t ahead) {
-        const std::string_view word = cursor.peekText(ahead);
-        return cursor.at(Token::Kind::Word, ahead) && word[0] >= 'a' && word[0] <= 'z';
+    constexpr std::string_view faceWords[] = {"rest", "top",   "bottom", "side",   "front", "back",
+                                              "left", "right", "court",  "shared", "inner", "outer"};
+    const auto atFaceWord = [&] {
+        return cursor.at(":", 1) && cursor.at(Token::Kind::Word, 2) &&
+               std::find(std::begin(faceWords), std::end(faceWords), cursor.peekText()) != std::end(faceWords);
     };
     do {
-        if (!body.siblings.empty() && isSmall(0) && cursor.at(":", 1) && isSmall(2))
+        if (!body.siblings.empty() && atFaceWord())
             cursor.fail("this part stands behind ','", "the parts of a block are set apart by '|'");
         body.siblings.push_back(readChain(cursor));
     } while (cursor.accept(","));

@@ -156,12 +156,17 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
                         "write " + quoted(std::string(before) + std::string(name))};
     }
     if (text == "or" && cursor.text(cursor.previous(3)) == "at")
-        return Hint{cursor.span(token), "'at' takes one joint", "write 'choose { 1: +x | 1: +z }' for either of them"};
-    if (token.kind == Token::Kind::Number && cursor.text(cursor.previous(2)) == "morph")
+        return Hint{cursor.span(token), "'at' takes one joint",
+                    "write " +
+                        quoted("choose { 1: " + std::string(cursor.text(cursor.previous(2))) + std::string(before) +
+                               " | 1: " + std::string(cursor.peekText(1)) + std::string(cursor.peekText(2)) + " }") +
+                        " for either of them"};
+    const bool isShare = text.starts_with('.') || text.starts_with("0.");
+    if (token.kind == Token::Kind::Number && isShare && cursor.text(cursor.previous(2)) == "morph")
         return Hint{cursor.span(token), quoted(text) + " can't follow a shape",
                     "write " + quoted("by " + std::string(text))};
     if (token.kind == Token::Kind::Number && before == "," && cursor.previous(2).kind == Token::Kind::Number &&
-        cursor.operations().find(cursor.text(cursor.previous(3))))
+        (cursor.text(cursor.previous(3)) == "size" || cursor.text(cursor.previous(3)) == "move") && !cursor.at(":", 1))
         return Hint{cursor.span(token), "expected a shape, found " + quoted(text),
                     "a vector stands in parentheses, as in " +
                         quoted(std::string(cursor.text(cursor.previous(3))) + " (" +

@@ -88,7 +88,7 @@ void correctNormals(Mesh& mesh) {
             const Vec3f across = cross(place(1) - place(0), place(2) - place(0)), face = normalized(across);
             const float longest =
                 std::max({square(place(1) - place(0)), square(place(2) - place(1)), square(place(0) - place(2))});
-            const float least = length(across) < sliver * longest ? 0 : leastAgreement;
+            const float least = length(across) <= sliver * longest ? 0 : leastAgreement;
             for (int k = 0; k < 3; ++k) {
                 const uint32_t corner = 3 * t + static_cast<uint32_t>(k);
                 const bool isOwn = own != chunk.cornerNormals.end() && own->corner == corner;

@@ -63,7 +63,10 @@ TEST(Warnings, AShapeThatNoRuleMatchesIsTold) {
     EXPECT_EQ(told(split + "rule N when scope.x > 1 -> cube\n"), "3:13 a 'N' that no rule matches stays empty\n");
     EXPECT_EQ(told(split + "rule N when scope.x > 3 -> cube\nrule N -> nil\n"), "");
     EXPECT_EQ(told("start A -> cube : N\nrule N when scope.x > 3 -> + cube at +x : N\n"), "") << "the cube stands";
-    EXPECT_EQ(told("start A -> cube\nrule B -> cube : N\nrule N when 1 > 3 -> + cube at +x : N\n"), "");
+    EXPECT_EQ(told("param on = false\nstart A -> size 4 split x { ~1: cube | 1m: N }\nrule N when on -> cube\n"), "")
+        << "a switch";
+    EXPECT_EQ(told("start A -> cube size 4 : T\nrule T when scope.x > 1 -> cube + T size 50% at +y\n"), "")
+        << "a recursion that ends";
 }
 
 TEST(Warnings, ATurnThatTheJointUndoesIsTold) {
