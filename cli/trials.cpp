@@ -137,8 +137,9 @@ private:
             selections_.add(derivation->selections);
             derivation->selections = selections_;
             found = derive::warnings(*derivation);
-        } else
+        } else {
             for (const derive::Warning& r : derivation->warnings) found.warning(r.span, r.message, r.hint);
+        }
         for (const syntax::Diagnostic& d : found.all())
             if (warned_.insert({d.span.source, d.span.begin, d.span.end}).second)
                 diagnostics_.warning(d.span, prefixed(setting.words, d.message), d.hint);

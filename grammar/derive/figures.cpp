@@ -1,4 +1,4 @@
-// What `check … expect` asks of a derivation: overlapping boxes, and more.
+// Figures of a derivation for `check … expect`: overlapping boxes.
 #include <algorithm>
 #include <unordered_set>
 

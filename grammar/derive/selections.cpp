@@ -29,6 +29,16 @@ Explanation noEdgeCalled(std::string_view word, const plan::Footprint& footprint
     return {std::move(message), std::move(hint)};
 }
 
+Explanation noEdgeLeft(std::string_view word, const plan::Footprint& footprint, std::string_view takers,
+                       std::string_view therefore, const std::vector<std::string>& others) {
+    const std::vector<plan::PlacedEdge> edges = plan::edgesOf(footprint);
+    if (std::none_of(edges.begin(), edges.end(),
+                     [&](const plan::PlacedEdge& edge) { return plan::isEdgeCalled(footprint, edge, word); }))
+        return noEdgeCalled(word, footprint, therefore, others);
+    return {fmt::format("{} before this one take all edges called '{}'", takers, word),
+            "write it before them: the first word that fits an edge wins"};
+}
+
 size_t Selections::KeyHash::operator()(const Key& key) const {
     return combine(reinterpret_cast<uintptr_t>(key.source), uint64_t(key.begin) << 32 | key.end);
 }

@@ -22,6 +22,11 @@ struct Explanation {
 Explanation noEdgeCalled(std::string_view word, const plan::Footprint& footprint, std::string_view therefore,
                          const std::vector<std::string>& others = {});
 
+/// Says why no edge of the plan is left for `word`: `takers` before it, such as "parts", take all that are called so;
+/// or as noEdgeCalled, where none is.
+Explanation noEdgeLeft(std::string_view word, const plan::Footprint& footprint, std::string_view takers,
+                       std::string_view therefore, const std::vector<std::string>& others = {});
+
 class Selections {
 public:
     /// The place picked something; O(1).

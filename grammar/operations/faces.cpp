@@ -186,14 +186,8 @@ private:
             const bool found =
                 std::any_of(faces.begin(), faces.end(), [&](const Face& face) { return face.part == &part; });
             context_.select(part.span, found, [&] {
-                const bool isTaken = std::any_of(edges_.begin(), edges_.end(), [&](const PlacedEdge& edge) {
-                    return plan::isEdgeCalled(footprint_, edge, part.label);
-                });
-                if (!isTaken)
-                    return derive::noEdgeCalled(part.label, footprint_, "so no face gets this part",
-                                                {"top", "bottom", "shared"});
-                return derive::Explanation{fmt::format("parts before this one take all edges called '{}'", part.label),
-                                           "write it before them: the first word that fits an edge wins"};
+                return derive::noEdgeLeft(part.label, footprint_, "parts", "so no face gets this part",
+                                          {"top", "bottom", "shared"});
             });
         }
     }

@@ -113,13 +113,7 @@ void applySetback(AttributeContext& context, const Attribute& attribute) {
     for (size_t i = 0; i < words.size(); ++i)
         if (words[i] != "rest" && words[i] != "side")
             derive::select(*context.place.builder, attribute.args[i].span, called[i], [&] {
-                const auto edges = plan::edgesOf(footprint);
-                const bool isTaken = std::any_of(edges.begin(), edges.end(), [&](const plan::PlacedEdge& edge) {
-                    return plan::isEdgeCalled(footprint, edge, words[i]);
-                });
-                if (!isTaken) return derive::noEdgeCalled(words[i], footprint, "so none goes inward by this");
-                return derive::Explanation{fmt::format("words before this one take all edges called '{}'", words[i]),
-                                           "write it before them: the first word that fits an edge wins"};
+                return derive::noEdgeLeft(words[i], footprint, "words", "so none goes inward by this");
             });
     auto inner = plan::setbackInBudget(footprint, distances);
     if (!inner.ok())

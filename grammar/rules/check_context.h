@@ -24,8 +24,7 @@ struct Constant {
     bool used = false, inWork = false;
 };
 
-/// A value that `with` sets: where first in the file itself (no source: in none), and whether an expression asks for
-/// it.
+/// A value that `with` sets: where first in the file itself (no source: in none), and whether an expression reads it.
 struct InheritedName {
     SourceSpan span;
     bool used = false;

@@ -84,8 +84,7 @@ bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_vi
         hint = "write all three, x, y and z, as in '(10, 1, 3)'";
     const bool isTriple = written && written->kind == Written::Kind::Tuple && written->args.size() == 3;
     if (isTriple && want == Want::Axis) hint = fmt::format("write 'move {}' to place it freely", written->span.text());
-    if (isTriple && want == Want::Color)
-        hint = fmt::format("write 'rgb(…)' with three shares from 0 to 1, or '#rrggbb'");
+    if (isTriple && want == Want::Color) hint = "write 'rgb(…)' with three shares from 0 to 1, or '#rrggbb'";
     if (want == Want::Color && written && written->kind == Written::Kind::Text && written->text.starts_with('#'))
         hint = "leave the quotes out";
     if (want == Want::Count && value.type.like.kind == Value::Kind::Number && value.type.like.units[0] == Unit::None)

@@ -238,7 +238,7 @@ void readControl(Cursor& cursor, Element& element) {
     }
     const bool endsRule = element.kind == Element::Kind::When && cursor.at(Token::Kind::End);
     element.body = readBracedBody(cursor, "before the body of '" + plain(word) + "'",
-                                  endsRule ? "a rule's own condition stands before '->': 'rule B when … -> …'" : "");
+                                  endsRule ? "a rule's condition stands before '->': 'rule B when … -> …'" : "");
 }
 
 /// A shape begins the body behind its values.

@@ -101,7 +101,7 @@ void ChosenPaths::findLive(size_t n) {
 /// Which points take the second operand's derivatives: those that take its value; of two that tie and bend by little
 /// against each other, those that take its name.
 uint64_t ChosenPaths::derivativesOfSecond(const Instruction& in, const Choice& choice) const {
-    constexpr float sameSide = .7f;  // cosine
+    constexpr float sameSide = .9f;  // cosine
     alignas(vectorFloats * sizeof(float)) std::array<float, pathPoints> numbers[2];
     uint64_t seconds = choice.values;
     for (uint64_t tied = (choice.values ^ choice.names) & choice.points; tied != 0; tied &= tied - 1) {

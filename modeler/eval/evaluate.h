@@ -72,7 +72,7 @@ void evaluateOrigin(const Tape& tape, Points points, OriginId* out, Workspace& w
 void evaluateLabels(const Tape& tape, Points points, uint32_t* labels, OriginId* origins, Workspace& workspace);
 
 /// Value, derivatives and labels of each point. The derivatives are those of the operands that give the value; where
-/// two tie whose derivatives are within 45 degrees of each other, those of the one that the point is named after.
+/// two tie whose derivatives are within 26 degrees of each other, those of the one that the point is named after.
 /// Unlike those of evaluateGradient the derivatives of a shortened tape have the same bits as the whole one's, wherever
 /// `relevant` tells its value apart.
 struct PieceSamples {

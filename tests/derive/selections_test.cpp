@@ -60,7 +60,7 @@ TEST(Selections, PartsOfASplitForWhichNothingIsLeftAreTold) {
     EXPECT_EQ(told("start A -> size 2 split x { 2m: cube | ~1: sphere | ~1: nil }\n"),
               "2:40 nothing is left of 2m for this part" + smaller);
     EXPECT_EQ(told("start A -> size 2 split x { 1m: cube | { 2m: sphere }* }\n"), "") << "as often as it fits";
-    EXPECT_EQ(told("start A -> size 2 split x { 2m: cube | ~0: sphere }\n"), "") << "it asks for nothing";
+    EXPECT_EQ(told("start A -> size 2 split x { 2m: cube | ~0: sphere }\n"), "") << "its share is 0";
     EXPECT_EQ(told("start A -> size 2 B, size 4 B\nrule B -> split x { 2m: cube | ~1: sphere }\n"), "");
 }
 

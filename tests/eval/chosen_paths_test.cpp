@@ -111,8 +111,8 @@ float alongFirst(float a, float b) {
 }
 
 TEST(ChosenPaths, GiveTheDerivativesOfTheNameWhereTwoBendByLittle) {
-    EXPECT_EQ(alongFirst(.8f, .6f), 1);
-    EXPECT_EQ(alongFirst(.6f, .8f), .6f) << "53 degrees";
+    EXPECT_EQ(alongFirst(.96f, .28f), 1) << "16 degrees";
+    EXPECT_EQ(alongFirst(.8f, .6f), .8f) << "37 degrees";
     EXPECT_EQ(alongFirst(0, 1), 0);
 }
 
