@@ -150,11 +150,14 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
                const mesh::Scene& scene, Context& context) {
     Figures figures;
     if (wantsFigures(request) && (request.seeksThinParts || !request.report.empty())) {
-        auto found = context.timed("thin parts", [&] {
-            return pipeline::findMissingParts(model, meshed, request.grid.threads, context.progress);
-        });
-        if (!found.ok()) return found.error();
-        figures.missing = std::move(*found);
+        if (!meshed.missing) {
+            auto found = context.timed("thin parts", [&] {
+                return pipeline::findMissingParts(model, meshed, request.grid.threads, context.progress);
+            });
+            if (!found.ok()) return found.error();
+            meshed.missing = std::move(*found);
+        }
+        figures.missing = *meshed.missing;
         auto buried =
             context.timed("buried parts", [&] { return pipeline::buriedWarnings(model, meshed.mesh, context); });
         if (!buried.ok()) return buried.error();

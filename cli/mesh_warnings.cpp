@@ -14,7 +14,7 @@ Status warnAtCells(const Model& model, const GridRequest& grid, Context& context
 }  // namespace
 
 Status warnOfMesh(const Model& model, const MeshedModel& meshed, Context& context) {
-    const auto warnings = pipeline::meshWarnings(model, meshed.mesh, meshed.grid, context);
+    const auto warnings = pipeline::meshWarnings(model, meshed, context);
     if (!warnings.ok()) return warnings.error();
     printMeshWarnings(*warnings);
     return Done{};

@@ -68,7 +68,7 @@ Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const ru
     if (!meshed.ok()) return meshed.error();
     std::vector<pipeline::MeshWarning> warnings;
     if (values.empty() && !request.quiet) {
-        auto found = pipeline::meshWarnings(*model, meshed->mesh, meshed->grid, context);
+        auto found = pipeline::meshWarnings(*model, *meshed, context);
         if (!found.ok()) return found.error();
         warnings = std::move(*found);
     }

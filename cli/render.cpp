@@ -365,7 +365,8 @@ void addRender(CLI::App& app, int& exitCode) {
         "turn_%04d.png --turntable 36");
     command->callback([request, command, &exitCode] {
         const bool isAsked = command->count("--resolution") + command->count("--cell") > 0;
-        request->print.warned = isAsked ? request->grid : GridRequest{.threads = request->grid.threads};
+        request->print.warned =
+            isAsked ? request->grid : GridRequest{.halvings = request->grid.halvings, .threads = request->grid.threads};
         exitCode = render(*request);
     });
 }

@@ -59,6 +59,11 @@ void addGridOptions(CLI::App& command, GridRequest& request) {
                     "crisp: creases and borders of materials are exact; cubes: plain marching cubes")
         ->transform(namedValue({{"crisp", int(mesh::Surface::Crisp)}, {"cubes", int(mesh::Surface::Cubes)}}))
         ->option_text("{crisp,cubes} [crisp]");
+    command
+        .add_option("--halvings", request.halvings,
+                    "How often crisp cells are halved around parts that are too thin for them: 0 … 3")
+        ->check(wholeNumber(0, 3))
+        ->capture_default_str();
     command.add_option("--threads", request.threads, "Threads (0: all)")
         ->check(wholeNumber(0, 1024))
         ->capture_default_str();
@@ -180,6 +185,7 @@ mesh::Grid gridOver(const Model& model, const GridRequest& request) {
 mesh::PolygonizeOptions meshingOf(const GridRequest& request, bool positionsOnly) {
     mesh::PolygonizeOptions options;
     options.surface = request.surface;
+    options.halvings = request.halvings;
     options.threads = request.threads;
     options.positionsOnly = positionsOnly;
     return options;

@@ -45,12 +45,13 @@ void addModelOptions(CLI::App& command, ModelRequest& request);
 /// Adds --section.
 void addSectionOption(CLI::App& command, ModelRequest& request);
 
-/// How fine and how: --resolution or --cell, --surface and --threads.
+/// How fine and how: --resolution or --cell, --surface, --halvings and --threads.
 struct GridRequest {
     int resolution = 128;
     double cell_m = 0;        ///< > 0 wins over resolution
     double objectCell_m = 0;  ///< of objects that `place` puts; 0: as the others say
     mesh::Surface surface = mesh::Surface::Crisp;
+    int halvings = 3;  ///< at most, of crisp cells around parts that are too thin for them
     int threads = 0;
 };
 void addGridOptions(CLI::App& command, GridRequest& request);

@@ -160,7 +160,7 @@ private:
         if (!meshed.ok()) return meshed.error();
         if (meshed->mesh.triangleCount() == 0 && model.derivation.objects.empty())
             return withOptions(pipeline::noSurface(model, meshed->grid.cell_m));
-        const auto found = pipeline::meshWarnings(model, meshed->mesh, meshed->grid, context);
+        const auto found = pipeline::meshWarnings(model, *meshed, context);
         if (!found.ok()) return found.error();
         // Where the cells lack parts, what seems to hang over a gap may stand on them.
         const bool lacks = std::any_of(found->begin(), found->end(), [](const auto& w) { return w.ofCells; });

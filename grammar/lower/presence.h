@@ -6,25 +6,11 @@
 #include <vector>
 
 #include "grammar/derive/shapes.h"
+#include "modeler/core/number_set.h"
 #include "modeler/core/provenance.h"
 #include "modeler/mesh/mesh.h"
 
 namespace sgm::lower {
-
-/// Numbers but 0, in a table of a power of two with room for twice as many: they are asked for millions of times.
-class NumberSet {
-public:
-    /// Amortised O(1).
-    void insert(uint64_t number);
-    bool contains(uint64_t number) const;
-
-private:
-    bool place(uint64_t number);
-    void grow();
-
-    std::vector<uint64_t> slots_ = std::vector<uint64_t>(1024);
-    size_t count_ = 0;
-};
 
 /// Quarters of the mesh's cells that hold triangles of thin parts.
 class Presence {

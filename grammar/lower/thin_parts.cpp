@@ -147,11 +147,13 @@ private:
         const OriginId part = candidate.part;
         findCrossings(candidate, tape);
         if (inside_.empty()) return 0;
-        owners_.resize(middles_.x.size());
+        // Where another part's surface is the same, a mesh may have it as that part's.
+        owners_.resize(middles_.x.size()), tied_.resize(owners_.size()), labels_.resize(owners_.size());
         eval::evaluateOrigin(tape, middles_.points(), owners_.data(), workspace_);
+        eval::evaluateLabels(tape, middles_.points(), labels_.data(), tied_.data(), workspace_);
         int met = 0, lacks = 0;
         for (size_t i = 0; i < owners_.size(); ++i) {
-            if (owners_[i] != part) continue;
+            if (owners_[i] != part || tied_[i] != part) continue;
             ++met, lacks += !presence_.isNear(middles_[i], part);
         }
         if (met < fewestCrossings) return 0;
@@ -226,7 +228,8 @@ private:
     eval::Workspace workspace_;
     Rows rows_, middles_;
     std::vector<float> values_;
-    std::vector<OriginId> owners_;
+    std::vector<OriginId> owners_, tied_;  ///< at the middles; where several tie, the first of them in `tied_`
+    std::vector<uint32_t> labels_;
     std::vector<Vec3f> inside_, outside_;
 };
 

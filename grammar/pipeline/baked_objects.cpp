@@ -71,6 +71,7 @@ Status BakedObjects::makeMeshes(uint32_t object, Context& context) {
     const PlacedModel& placed = objects_[object];
     SceneRequest request;
     request.meshing.surface = mesh::Surface::Crisp;
+    request.meshing.halvings = 0;  // what is thinner than the cells isn't worth its bytes in a town
     request.cell_m = cell_m_;
     auto meshed = meshObject(*placed.derivation, request, context);
     if (!meshed.ok()) return meshed.error();

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "grammar/pipeline/refining.h"
 #include "grammar/pipeline/scene.h"
 
 namespace sgm::pipeline {
@@ -68,6 +69,11 @@ Result<MeshedModel> IncrementalPipeline::meshed(const mesh::Grid& grid, Context&
     context.stages.emplace_back("subdivide", made.counts.subdivideSeconds);
     context.stages.emplace_back("sample", made.counts.sampleSeconds);
     context.stages.emplace_back("polygonize", made.counts.polygonizeSeconds);
+    if (meshing_.surface == mesh::Surface::Crisp && meshing_.halvings > 0) {
+        auto missing = holdThinParts(viewModel(), made.mesh, grid, meshing_.halvings, context);
+        if (!missing.ok()) return missing.error();
+        made.missing = std::move(*missing);
+    }
     return made;
 }
 

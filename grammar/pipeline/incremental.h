@@ -14,7 +14,7 @@ namespace sgm::pipeline {
 
 class IncrementalPipeline {
 public:
-    explicit IncrementalPipeline(mesh::PolygonizeOptions meshing = {}) : rebuild_(meshing) {}
+    explicit IncrementalPipeline(mesh::PolygonizeOptions meshing = {}) : meshing_(meshing), rebuild_(meshing) {}
 
     /// The stages to the tape, one after the other ("derive", "lower", "compile"); or each by itself, in this order.
     /// Errors as of the stages; after one the next call starts over.
@@ -24,7 +24,7 @@ public:
     void compile();
     /// The mesh of the tape on a grid (mesh::gridToKeep); see mesh::Rebuild.
     Result<const mesh::Mesh*> mesh(const mesh::Grid& grid, Progress* progress, mesh::Counts& counts);
-    /// That mesh with its grid and counts, without blocks. Stages "subdivide", "sample", "polygonize".
+    /// That mesh with its grid and counts, without blocks, and with cells halved as in makeMesh, whose stages it has.
     Result<MeshedModel> meshed(const mesh::Grid& grid, Context& context);
 
     /// The model of the last `to`, valid until the next call.
@@ -44,6 +44,7 @@ public:
     bool followed() const { return !grafted_ && !derivation_.whole() && !lowering_.whole() && !compiler_.whole(); }
 
 private:
+    const mesh::PolygonizeOptions meshing_;
     derive::IncrementalDerivation derivation_;
     std::optional<derive::Derivation> grafted_;  ///< with the objects that it places, where there are any
     lower::IncrementalLowering lowering_;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "grammar/pipeline/refining.h"
+
 namespace sgm::pipeline {
 
 Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::PolygonizeOptions options,
@@ -26,6 +28,11 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::P
     const double share = counted > 0 ? made.counts.sampleSeconds / counted : 0;
     context.stages.emplace_back("sample", seconds * share);
     context.stages.emplace_back("polygonize", seconds * (1 - share));
+    if (options.surface == mesh::Surface::Crisp && options.halvings > 0) {
+        auto missing = holdThinParts(model, made.mesh, made.grid, options.halvings, context);
+        if (!missing.ok()) return missing.error();
+        made.missing = std::move(*missing);
+    }
     return made;
 }
 

@@ -2,8 +2,10 @@
 // Enters: a model, a grid. Leaves: a mesh with the blocks it came from. Assumes a bounded model.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "grammar/lower/thin_parts.h"
 #include "grammar/pipeline/model.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/volume/volume.h"
@@ -16,8 +18,11 @@ struct MeshedModel {
     std::vector<mesh::Block> blocks;
     mesh::Mesh mesh;
     mesh::Counts counts;
+    /// Parts of which the mesh lacks some, for they are too thin for its cells; nothing where that wasn't asked.
+    std::optional<std::vector<lower::ThinPart>> missing = {};
 };
-/// Stages "subdivide", "sample" and "polygonize", on `context.threads` threads whatever `options` say of them.
+/// Stages "subdivide", "sample" and "polygonize", on `context.threads` threads whatever `options` say of them; of a
+/// crisp mesh whose cells may be halved "thin parts" and "halve cells", see holdThinParts.
 Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::PolygonizeOptions options,
                              Context& context);
 

@@ -31,6 +31,7 @@ double withTwoDigits(double value) {
 
 Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
                                                       Progress* progress) {
+    if (meshed.missing) return *meshed.missing;
     return lower::findMissingParts(model.derivation, *model.lowered, model.tape, meshed.mesh, meshed.grid.cell_m,
                                    threads, progress);
 }
@@ -75,19 +76,22 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
     return warnings;
 }
 
-Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const mesh::Mesh& mesh, const mesh::Grid& grid,
-                                              Context& context) {
-    const auto missing = lower::findMissingParts(model.derivation, *model.lowered, model.tape, mesh, grid.cell_m,
-                                                 context.threads, context.progress);
+Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const MeshedModel& meshed, Context& context) {
+    const auto missing = findMissingParts(model, meshed, context.threads, context.progress);
     if (!missing.ok()) return missing.error();
+    return meshWarnings(model, meshed.mesh, meshed.grid, *missing, context);
+}
+
+Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const mesh::Mesh& mesh, const mesh::Grid& grid,
+                                              const std::vector<lower::ThinPart>& missing, Context& context) {
     Support support = supportOf(model, mesh, grid.cell_m);
-    if (const Status s = findCauses(model, mesh, grid.cell_m, *missing, support, context.progress); !s.ok())
+    if (const Status s = findCauses(model, mesh, grid.cell_m, missing, support, context.progress); !s.ok())
         return s.error();
     auto buried = buriedWarnings(model, mesh, context);
     if (!buried.ok()) return buried;
     std::vector<MeshWarning> warnings = floatingWarnings(model, support, grid.cell_m);
     for (MeshWarning& hidden : *buried) warnings.push_back(std::move(hidden));
-    for (MeshWarning& thin : missingWarnings(model, grid, *missing)) warnings.push_back(std::move(thin));
+    for (MeshWarning& thin : missingWarnings(model, grid, missing)) warnings.push_back(std::move(thin));
     return warnings;
 }
 

@@ -10,7 +10,7 @@
 
 namespace sgm::pipeline {
 
-/// As lower::findMissingParts, for a mesh as it comes from makeMesh.
+/// The parts that a mesh, as it comes from makeMesh, lacks: what is known of that, or as lower::findMissingParts.
 Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
                                                       Progress* progress);
 
@@ -21,7 +21,9 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
 
 /// Looks at a mesh as it comes from makeMesh for what floats, why, for what is buried and what is too thin: what every
 /// command and the window tell alike. Error::Cancelled.
+Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const MeshedModel& meshed, Context& context);
+/// The same where the parts that the mesh lacks are known.
 Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const mesh::Mesh& mesh, const mesh::Grid& grid,
-                                              Context& context);
+                                              const std::vector<lower::ThinPart>& missing, Context& context);
 
 }  // namespace sgm::pipeline

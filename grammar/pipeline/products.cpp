@@ -16,7 +16,9 @@ Result<std::vector<mesh::LevelOfDetail>> makeLevels(const Model& model, const me
     const auto meshAt = [&](float coarse_m) -> Result<mesh::Mesh> {
         Context own{context.progress, context.threads, {}};
         const mesh::Grid grid = gridOver(model, {.cell_m = static_cast<double>(coarse_m)}, request.meshing.surface);
-        auto meshed = makeMesh(model, grid, request.meshing, own);
+        mesh::PolygonizeOptions meshing = request.meshing;
+        meshing.halvings = 0;  // coarse levels do without what is thin
+        auto meshed = makeMesh(model, grid, meshing, own);
         if (!meshed.ok()) return meshed.error();
         mesh::keepOnly(meshed->mesh, request.edits.keep, coarse_m, own.threads);
         if (request.flipNormals) mesh::turnInsideOut(meshed->mesh);

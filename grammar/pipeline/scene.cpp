@@ -167,8 +167,7 @@ Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest&
     if (!meshed.ok()) return meshed.error();
     std::vector<MeshWarning> lacks;
     if (!name.empty()) {
-        const auto missing = lower::findMissingParts(model->derivation, *model->lowered, model->tape, meshed->mesh,
-                                                     cell_m, context.threads, context.progress);
+        const auto missing = findMissingParts(*model, *meshed, context.threads, context.progress);
         if (!missing.ok()) return missing.error();
         lacks = missingWarnings(*model, grid, *missing, name);
         auto buried = buriedWarnings(*model, meshed->mesh, context);

@@ -22,6 +22,7 @@ enum class Surface {
 
 struct PolygonizeOptions {
     Surface surface = Surface::Cubes;
+    int halvings = 3;     ///< crisp cells around thin parts are halved so often at most; asked of who knows the parts
     int threads = 0;      ///< 0 = all
     int refineSteps = 3;  ///< evaluations a vertex may take after linear interpolation; 0 = the paper's interpolation
     bool positionsOnly = false;  ///< of Cubes: the shape alone, which is the same: chunks without normals and origins

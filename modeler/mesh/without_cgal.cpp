@@ -1,5 +1,6 @@
-// What simplify.cpp, tips.cpp and validate_exactly.cpp do in a build without CGAL.
+// What refine.cpp, simplify.cpp, tips.cpp and validate_exactly.cpp do in a build without CGAL.
 #include "modeler/core/packages.h"
+#include "modeler/mesh/refine.h"
 #include "modeler/mesh/simplify.h"
 #include "modeler/mesh/tips.h"
 #include "modeler/mesh/validate.h"
@@ -13,6 +14,10 @@ Result<Mesh> simplify(const Mesh&, const SimplifyOptions&, Progress*) {
 }
 
 Result<size_t> completeTips(Mesh&, const eval::Tape&, float, int, Progress*) { return size_t{0}; }
+
+Result<CellSet> refineCells(Mesh&, const eval::Tape&, const Grid&, const CellSet&, const RefineOptions&, Progress*) {
+    return CellSet{};
+}
 
 Result<Mesh> simplifyToShare(const Mesh&, double, int, Progress*) {
     return missingPackage(Package::Cgal, "simplification");

@@ -128,22 +128,29 @@ Result<MeshRow> measureRow(const Prepared& p, int resolution, const MeshesOption
     MeshRow row{p.name, resolution, 0, p.exactTriangles, 0, 0, 0, 0, p.ownersDiffer, p.border_m, std::nullopt};
     std::optional<cli::MeshedModel> made;
     const auto least = [&](double& sum, double seconds, int i) { sum = i == 0 ? seconds : std::min(sum, seconds); };
-    for (const mesh::Surface surface : {mesh::Surface::Cubes, mesh::Surface::Crisp})
+    struct Way {
+        mesh::Surface surface;
+        int halvings;
+        double& seconds;
+    };
+    for (const Way& way : {Way{mesh::Surface::Cubes, 0, row.cubesSeconds},
+                           Way{mesh::Surface::Crisp, 0, row.crispSeconds}, Way{mesh::Surface::Crisp, 3, row.seconds}})
         for (int i = 0; i < std::max(1, options.repeats); ++i) {
-            const cli::GridRequest grid{
-                .resolution = resolution, .surface = surface, .threads = options.running.threads};
+            const cli::GridRequest grid{.resolution = resolution,
+                                        .surface = way.surface,
+                                        .halvings = way.halvings,
+                                        .threads = options.running.threads};
             cli::Context context{nullptr, grid.threads};
             const Stopwatch watch(options.running);
             auto meshed = cli::makeMesh(p.model, grid, context);
-            least(surface == mesh::Surface::Cubes ? row.cubesSeconds : row.crispSeconds, watch.seconds(), i);
             if (!meshed.ok()) return meshed.error();
-            if (surface == mesh::Surface::Crisp) {  // as `sgm build` does
+            if (way.halvings > 0) {  // as `sgm build` does
                 auto simple = pipeline::edited(std::move(meshed->mesh), {},
-                                               {p.model.tape, surface, meshed->grid.cell_m}, context);
+                                               {p.model.tape, way.surface, meshed->grid.cell_m}, context);
                 if (!simple.ok()) return simple.error();
                 meshed->mesh = std::move(*simple);
-                least(row.seconds, watch.seconds(), i);
             }
+            least(way.seconds, watch.seconds(), i);
             made = std::move(*meshed);
         }
     row.triangles = made->mesh.triangleCount();

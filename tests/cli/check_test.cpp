@@ -43,10 +43,10 @@ TEST_F(Check, RefusesWhatBuildRefuses) {
 }
 
 TEST_F(Check, LooksAtTheCellsThatAreAskedFor) {
-    const std::string beam = "start A -> cube size (1000, 1, 1)\n";
+    const std::string beam = "start A -> cube size (10000, 1, 1)\n";
     expectRefused(beam, "2:1",
-                  "there is no surface at cells of 7.81 m, for no part is thicker than 1 m: cells of half of");
-    EXPECT_EQ(checked(beam, " --cell 0.5").code, 0);
+                  "there is no surface at cells of 78.1 m, for no part is thicker than 1 m: cells of half of");
+    EXPECT_EQ(checked(beam, " --cell 5").code, 0);
 }
 
 TEST_F(Check, BudgetsAreExitCodeThree) {

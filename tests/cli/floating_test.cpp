@@ -76,7 +76,7 @@ TEST_F(Cli, AFloatingPieceNamesTheThinPartThatHoldsIt) {
         "start A -> cube size (20, .5, 20) : Base\n"
         "rule Base -> + cube size (.12, 3, .12) at +y move (.13, 0, .13) : Post\n"
         "rule Post -> + sphere size .9 at +y overlap .3\n");
-    const Outcome coarse = sgm("build " + file + " --cell .29 --report " + path("r.json"));
+    const Outcome coarse = sgm("build " + file + " --cell .29 --halvings 0 --report " + path("r.json"));
     EXPECT_NE(coarse.out.find("'A/Base/Post' (" + file +
                               ":3), 0.12 m thick, holds it and is thinner than a cell of 0.29 m: --resolution "),
               std::string::npos)
@@ -108,7 +108,7 @@ TEST_F(Cli, EveryCommandTellsGapsAndThinParts) {
     const std::string thin = scratch_
                                  .write("thin.sgm",
                                         "grammar 1\nstart A -> cube size (20, 3, 20) : Base\n"
-                                        "rule Base -> + cube size (.03, 3, .03) at +y move (.13, 0, .13) "
+                                        "rule Base -> + cube size (.015, 3, .015) at +y move (.13, 0, .13) "
                                         "turn (0deg, 20deg, 0deg)\n")
                                  .string();
     const std::string picture = " --size 32x32 -o " + path("a.png");
@@ -120,7 +120,7 @@ TEST_F(Cli, EveryCommandTellsGapsAndThinParts) {
                                   ":2)"),
                   std::string::npos)
             << command << floats.out;
-        EXPECT_NE(lost.out.find("a 'cube' of 0.03 m is thinner than the mesh's cells of"), std::string::npos)
+        EXPECT_NE(lost.out.find("a 'cube' of 0.015 m is thinner than the mesh's cells of"), std::string::npos)
             << command << lost.out;
         EXPECT_NE(lost.out.find(thin + ":3:"), std::string::npos) << command << lost.out;
     }
@@ -153,17 +153,18 @@ TEST_F(Cli, PartsThatTheCellsOfAnObjectLackAreTold) {
         "rule G -> + place House at +y\n"
         "start House -> cube size (20, 6, 20) + cube size (.05m, 3m, .05m) at +x\n");
     const std::string lacks = "lacks 100 % of the surface: --object-cell ";
-    const Outcome built = sgm("build " + file + " -o " + path("a.glb"));
+    const Outcome built = sgm("build " + file + " --halvings 0 -o " + path("a.glb"));
     EXPECT_EQ(built.code, 0);
     EXPECT_NE(built.out.find(":4: a 'cube' of 0.05 m is thinner than the cells of 'House' of 0.157 m and " + lacks),
               std::string::npos)
         << built.out;
     const size_t at = built.out.find(lacks) + lacks.size();
     const std::string cell = built.out.substr(at, built.out.find(' ', at) - at);
-    const Outcome finer = sgm("build " + file + " --object-cell " + cell + " -o " + path("a.glb"));
+    const Outcome finer = sgm("build " + file + " --halvings 0 --object-cell " + cell + " -o " + path("a.glb"));
     EXPECT_EQ(finer.out.find("thinner"), std::string::npos) << cell << finer.out;
+    EXPECT_EQ(sgm("build " + file + " -o " + path("a.glb")).out.find("thinner"), std::string::npos);
     EXPECT_EQ(sgm("build " + file + " -q -o " + path("a.glb")).out, "");
-    const Outcome drawn = sgm("render " + file + " --size 32x32 -o " + path("a.png"));
+    const Outcome drawn = sgm("render " + file + " --size 32x32 --halvings 0 -o " + path("a.png"));
     if (drawn.out.find("EGL") != std::string::npos) return;  // nothing can be drawn here
     EXPECT_NE(drawn.out.find("thinner than the cells of 'House'"), std::string::npos) << drawn.out;
     EXPECT_EQ(drawn.out.find("--resolution"), std::string::npos) << drawn.out;
@@ -174,7 +175,7 @@ TEST_F(Cli, PicturesWarnAtTheCellsThatAreAskedFor) {
         "start A -> cube size (20, 1, 1) + cube size (.05, 2, .05) move (.05, 1, .03)"
         " + cube size (.05, 2, .05) move (3.05, 1, .13)\n");
     const auto drawn = [&](const std::string& cells) {
-        return sgm("render " + file + " --size 32x32 " + cells + " -o " + path("a.png")).out;
+        return sgm("render " + file + " --size 32x32 --halvings 0 " + cells + " -o " + path("a.png")).out;
     };
     if (drawn("").find("EGL") != std::string::npos) GTEST_SKIP() << "nothing can be drawn here";
     EXPECT_NE(drawn("").find("the mesh's cells of 0.156 m"), std::string::npos);

@@ -2,6 +2,7 @@
 #include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/missing.h"
+#include "grammar/pipeline/refining.h"
 #include "viewer/document/session.h"
 
 namespace sgm::document {
@@ -9,6 +10,23 @@ namespace {
 
 constexpr float keptCells =
     1.25f;  ///< the lattice of a mesh is kept while its cells are within this factor of what is wished
+
+/// A mesh with halved cells around thin parts, null where it stays as it is, and the parts that it lacks.
+struct FinerMesh {
+    std::shared_ptr<const BuiltMesh> mesh;
+    std::vector<lower::ThinPart> missing;
+};
+Result<FinerMesh> withThinParts(const BuiltMesh& coarse, pipeline::Context& context) {
+    mesh::Mesh mesh = *coarse.mesh;
+    auto missing =
+        pipeline::holdThinParts(coarse.of->model, mesh, coarse.grid, mesh::PolygonizeOptions{}.halvings, context);
+    if (!missing.ok()) return missing.error();
+    if (mesh.triangleCount() == coarse.mesh->triangleCount()) return FinerMesh{nullptr, std::move(*missing)};
+    auto finer = std::make_shared<BuiltMesh>(coarse);
+    finer->mesh = std::make_shared<const mesh::Mesh>(std::move(mesh));
+    finer->stages.insert(finer->stages.end(), context.stages.begin(), context.stages.end());
+    return FinerMesh{std::move(finer), std::move(*missing)};
+}
 
 }  // namespace
 
@@ -72,7 +90,16 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
     last_.problems.mesh.clear();
     if (request.dragging || queue_.isSuperseded()) return;
     pipeline::Context context{&progress};
-    const auto warnings = pipeline::meshWarnings(last_.shown->model, *meshed->mesh, meshed->grid, context);
+    const auto finer = withThinParts(*meshed, context);
+    if (!finer.ok()) return;
+    if (finer->mesh) {
+        last_.meshed = finer->mesh;
+        Update more;
+        more.mesh = finer->mesh;
+        publish(std::move(more));
+    }
+    const auto warnings =
+        pipeline::meshWarnings(last_.shown->model, *last_.meshed->mesh, meshed->grid, finer->missing, context);
     if (!warnings.ok()) return;
     syntax::Diagnostics found;
     for (const pipeline::MeshWarning& w : *warnings) found.warning(w.span, w.text);

@@ -1,0 +1,22 @@
+// The cells of a mesh around parts that are too thin for them.
+// Enters: parts that a mesh lacks. Leaves: cells.
+#pragma once
+
+#include "grammar/lower/thin_parts.h"
+#include "modeler/mesh/cell_set.h"
+
+namespace sgm::lower {
+
+/// How often cells of `cell_m` metres have to be halved until they hold a part.
+int halvingsFor(const ThinPart& part, float cell_m);
+
+/// About as many cells as addCellsAround looks at.
+double countCellsAround(const ThinPart& part, const derive::Derivation& derivation, const Model& model,
+                        const mesh::Grid& grid);
+
+/// Adds the cells of `grid` whose middles lie within one and a half cells of a part's scope. O(cells of the box around
+/// it).
+void addCellsAround(const ThinPart& part, const derive::Derivation& derivation, const Model& model,
+                    const mesh::Grid& grid, mesh::CellSet& cells);
+
+}  // namespace sgm::lower

@@ -1,0 +1,108 @@
+#include "grammar/pipeline/refining.h"
+
+#include <algorithm>
+#include <map>
+
+#include "grammar/lower/thin_cells.h"
+#include "modeler/mesh/refine.h"
+
+namespace sgm::pipeline {
+namespace {
+
+constexpr size_t mostGrowth = 4, leastBound = 500000;  ///< of triangles
+constexpr double cellsPerTriangle = 16;                ///< at most looked at, of the triangles that the mesh may have
+constexpr int mostHalvingsOfCells = 3;
+
+/// Cells to be halved, by how often.
+using HalvedCells = std::array<mesh::CellSet, mostHalvingsOfCells + 1>;
+
+class ThinPartRefiner {
+public:
+    ThinPartRefiner(const Model& model, mesh::Mesh& mesh, const mesh::Grid& grid, int mostHalvings, Context& context)
+        : model_(model),
+          mesh_(mesh),
+          grid_(grid),
+          most_(std::min(mostHalvings, mostHalvingsOfCells)),
+          context_(context),
+          mostTriangles_(std::max(mostGrowth * mesh.triangleCount(), leastBound)) {}
+
+    /// Cells around what the mesh lacks are meshed anew, and again with smaller ones while some of it is still missing:
+    /// within its scope a part may be thinner.
+    Result<std::vector<lower::ThinPart>> run() {
+        for (;;) {
+            const Stopwatch finding;
+            auto missing = lower::findMissingParts(model_.derivation, *model_.lowered, model_.tape, mesh_, grid_.cell_m,
+                                                   context_.threads, context_.progress);
+            findingSeconds_ += finding.seconds();
+            if (!missing.ok()) return missing;
+            const HalvedCells cells = cellsAround(*missing);
+            bool isRefined = false;
+            for (int halvings = 1; halvings <= most_; ++halvings)
+                if (const Status s = refine(cells[static_cast<size_t>(halvings)], halvings, isRefined); !s.ok())
+                    return s.error();
+            if (isRefined) continue;
+            context_.stages.emplace_back("thin parts", findingSeconds_);
+            if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
+            return missing;
+        }
+    }
+
+private:
+    HalvedCells cellsAround(const std::vector<lower::ThinPart>& missing) {
+        HalvedCells cells;
+        double cellCount = 0;
+        for (const lower::ThinPart& part : missing) {
+            int& tried = tried_[part.part];
+            tried = std::max(tried + 1, lower::halvingsFor(part, grid_.cell_m));
+            if (tried > most_) continue;
+            cellCount += lower::countCellsAround(part, model_.derivation, *model_.lowered, grid_);
+            if (cellCount > cellsPerTriangle * static_cast<double>(mostTriangles_)) continue;
+            mesh::CellSet around;
+            lower::addCellsAround(part, model_.derivation, *model_.lowered, grid_, around);
+            tried = std::max(tried, halvingsIn(around));
+            for (const Vec3i cell : around.list()) cells[static_cast<size_t>(tried)].insert(cell);
+        }
+        return cells;
+    }
+
+    /// How often some of the cells, or cells beside them, were halved.
+    int halvingsIn(const mesh::CellSet& cells) const {
+        for (int halvings = most_; halvings > 0; --halvings) {
+            const mesh::CellSet& halved = halved_[static_cast<size_t>(halvings)];
+            const auto isHalved = [&](Vec3i cell) { return halved.contains(cell); };
+            if (!halved.empty() && std::any_of(cells.list().begin(), cells.list().end(), isHalved)) return halvings;
+        }
+        return 0;
+    }
+
+    Status refine(const mesh::CellSet& cells, int halvings, bool& isRefined) {
+        if (cells.empty()) return Done{};
+        const Stopwatch watch;
+        const auto refined = mesh::refineCells(mesh_, model_.tape, grid_, cells,
+                                               {halvings, mostTriangles_, context_.threads}, context_.progress);
+        halvingSeconds_ += watch.seconds();
+        if (!refined.ok()) return refined.error();
+        for (const Vec3i cell : refined->list()) halved_[static_cast<size_t>(halvings)].insert(cell);
+        isRefined |= !refined->empty();
+        return Done{};
+    }
+
+    const Model& model_;
+    mesh::Mesh& mesh_;
+    const mesh::Grid& grid_;
+    const int most_;
+    Context& context_;
+    const size_t mostTriangles_;
+    std::map<OriginId, int> tried_;  ///< halvings of the cells around a part
+    HalvedCells halved_;
+    double findingSeconds_ = 0, halvingSeconds_ = 0;
+};
+
+}  // namespace
+
+Result<std::vector<lower::ThinPart>> holdThinParts(const Model& model, mesh::Mesh& mesh, const mesh::Grid& grid,
+                                                   int mostHalvings, Context& context) {
+    return ThinPartRefiner(model, mesh, grid, mostHalvings, context).run();
+}
+
+}  // namespace sgm::pipeline

@@ -1,0 +1,19 @@
+// Cells of a mesh halved around parts that are too thin for them.
+// Enters: a model and its crisp mesh. Leaves: the mesh that holds these parts, as far as it may grow.
+#pragma once
+
+#include <vector>
+
+#include "grammar/lower/thin_parts.h"
+#include "grammar/pipeline/model.h"
+#include "modeler/mesh/subdivide.h"
+
+namespace sgm::pipeline {
+
+/// Looks for parts that a mesh, as it comes from polygonize on `grid`, lacks since they are thinner than its cells, and
+/// halves the cells around them up to `mostHalvings` (0 … 3) times, while the mesh grows to no more than four times its
+/// triangles or half a million. Returns the parts of which it still lacks some. Stages "thin parts" and "halve cells".
+Result<std::vector<lower::ThinPart>> holdThinParts(const Model& model, mesh::Mesh& mesh, const mesh::Grid& grid,
+                                                   int mostHalvings, Context& context);
+
+}  // namespace sgm::pipeline

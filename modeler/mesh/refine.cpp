@@ -1,0 +1,332 @@
+#include "modeler/mesh/refine.h"
+
+#include <algorithm>
+#include <iterator>
+#include <mutex>
+#include <optional>
+
+#include "modeler/core/parallel.h"
+#include "modeler/mesh/box_finder.h"
+#include "modeler/mesh/cell_seams.h"
+#include "modeler/mesh/exact_meeting.h"
+#include "modeler/mesh/fine_cells.h"
+#include "modeler/mesh/one_chunk.h"
+
+namespace sgm::mesh {
+namespace {
+
+constexpr int mostFittings = 24;            ///< of the cells, which grow or shrink each time
+constexpr size_t mostGrowth = 4;            ///< times the cells that were asked for there may come to be
+constexpr size_t leastGrowth = 4096;        ///< as many may always
+constexpr size_t trianglesAtOnce = 4096;    ///< of a parallel loop
+constexpr float sameNormal = 1.0f - 1e-5f;  ///< cosine between normals that needn't be told apart
+constexpr uint32_t noFine = 0xffffffffu;
+
+/// How the fine surface in some cells fits the coarse one around them.
+struct Fits {
+    std::vector<uint32_t> fineOf;      ///< by coarse vertex: the fine one in its place
+    std::vector<SeamFit::Edge> edges;  ///< ascending by triangle
+};
+
+/// Two surfaces as one, the fine one in some cells and the coarse one in the others.
+class JoinedSurface {
+public:
+    JoinedSurface(const SurfaceInCells& coarseCells, const SurfaceInCells& fineCells, const CellSet& cells,
+                  const Fits& fits)
+        : coarse_(coarseCells.surface()),
+          fine_(fineCells.surface()),
+          fits_(fits),
+          firstFine_(static_cast<uint32_t>(coarse_.positions.size())) {
+        const Chunk &coarse = coarse_, &fine = fine_;
+        made_.positions = coarse.positions, made_.normals = coarse.normals;
+        made_.positions.insert(made_.positions.end(), fine.positions.begin(), fine.positions.end());
+        made_.normals.insert(made_.normals.end(), fine.normals.begin(), fine.normals.end());
+        for (const ConfinedVertex& v : coarse.confined)
+            if (fits.fineOf[v.vertex] == noFine) made_.confined.push_back(v);
+        for (const ConfinedVertex& v : fine.confined) made_.confined.push_back({firstFine_ + v.vertex, v.place});
+        made_.faceted = coarse.faceted;
+        for (const uint32_t v : fine.faceted) made_.faceted.push_back(firstFine_ + v);
+        addCoarse(coarseCells, cells);
+        addFine(fineCells, cells);
+    }
+
+    /// The coarse triangles that changed, by their numbers in the coarse surface, ascending by that in the joined one.
+    struct Changed {
+        uint32_t triangle, before;
+    };
+    const std::vector<Changed>& changed() const { return changed_; }
+    const Chunk& surface() const { return made_; }
+    Chunk release() { return std::move(made_); }
+
+private:
+    /// Adds the coarse triangles in other cells; edges of the cut become those of the fine one.
+    void addCoarse(const SurfaceInCells& surface, const CellSet& cells) {
+        auto next = fits_.edges.begin();
+        visitTriangles(coarse_, [&](uint32_t t, std::span<const CornerNormal> normals) {
+            if (cells.contains(surface.cellOf(t))) return;
+            const auto first = next;
+            while (next != fits_.edges.end() && next->triangle == t) ++next;
+            addTriangle(t, normals, {first, next});
+        });
+    }
+
+    /// Adds the fine triangles in the cells.
+    void addFine(const SurfaceInCells& surface, const CellSet& cells) {
+        visitTriangles(fine_, [&](uint32_t t, std::span<const CornerNormal> normals) {
+            if (!cells.contains(surface.cellOf(t))) return;
+            const auto triangle = static_cast<uint32_t>(made_.triangles.size());
+            const Triangle& c = fine_.triangles[t];
+            made_.triangles.push_back({firstFine_ + c.x, firstFine_ + c.y, firstFine_ + c.z});
+            made_.origins.push_back(fine_.origins[t]), made_.labels.push_back(fine_.labels[t]);
+            for (const CornerNormal& n : normals)
+                made_.cornerNormals.push_back({3 * triangle + n.corner % 3, n.normal});
+        });
+    }
+
+    /// A vertex of the joined surface with the normal of the triangle that it belongs to.
+    struct Corner {
+        uint32_t vertex;
+        Vec3f normal;
+        bool hasOwn;  ///< the triangle says another normal than the vertex
+    };
+
+    uint32_t placeOf(uint32_t vertex) const {
+        const uint32_t fine = fits_.fineOf[vertex];
+        return fine == noFine ? vertex : firstFine_ + fine;
+    }
+
+    void addTriangle(uint32_t t, std::span<const CornerNormal> normals, std::span<const SeamFit::Edge> cut) {
+        std::array<Corner, 3> corners;
+        const Triangle& c = coarse_.triangles[t];
+        bool moves = false;
+        for (size_t k = 0; k < 3; ++k) {
+            const uint32_t v = c[static_cast<int>(k)];
+            corners[k] = {placeOf(v), coarse_.normals[v], false};
+            moves |= corners[k].vertex != v;
+        }
+        for (const CornerNormal& n : normals) corners[n.corner % 3].normal = n.normal;
+        for (Corner& corner : corners) corner.hasOwn = dot(corner.normal, made_.normals[corner.vertex]) < sameNormal;
+        for (const CornerNormal& n : normals) corners[n.corner % 3].hasOwn = true;
+        const size_t first = made_.triangles.size();
+        if (cut.empty()) {
+            add(corners, t);
+        } else {
+            std::vector<std::array<Corner, 3>> parts{corners};
+            for (const SeamFit::Edge& edge : cut) splitAlong(parts, edge);
+            for (const std::array<Corner, 3>& part : parts) add(part, t);
+        }
+        if (!moves) return;
+        for (size_t i = first; i < made_.triangles.size(); ++i) changed_.push_back({static_cast<uint32_t>(i), t});
+    }
+
+    /// Puts fine vertices into the edge of one of the parts, which becomes a fan.
+    void splitAlong(std::vector<std::array<Corner, 3>>& parts, const SeamFit::Edge& edge) const {
+        if (edge.inner.empty()) return;
+        const uint32_t from = placeOf(edge.from), to = placeOf(edge.to);
+        for (size_t p = 0; p < parts.size(); ++p)
+            for (size_t k = 0; k < 3; ++k) {
+                const std::array<Corner, 3> part = parts[p];
+                const Corner &a = part[k], &b = part[(k + 1) % 3], &apex = part[(k + 2) % 3];
+                if (a.vertex != from || b.vertex != to) continue;
+                Corner before = a;
+                for (size_t i = 0; i < edge.inner.size(); ++i) {
+                    const Corner at = between(a, b, firstFine_ + edge.inner[i]);
+                    if (i == 0)
+                        parts[p] = {before, at, apex};
+                    else
+                        parts.push_back({before, at, apex});
+                    before = at;
+                }
+                parts.push_back({before, b, apex});
+                return;
+            }
+    }
+
+    Corner between(const Corner& a, const Corner& b, uint32_t vertex) const {
+        const Vec3f from = made_.positions[a.vertex], way = made_.positions[b.vertex] - from;
+        const float share = std::clamp(dot(made_.positions[vertex] - from, way) / dot(way, way), 0.0f, 1.0f);
+        const Vec3f normal = normalized(a.normal * (1 - share) + b.normal * share);
+        return {vertex, normal, dot(normal, made_.normals[vertex]) < sameNormal};
+    }
+
+    void add(const std::array<Corner, 3>& part, uint32_t of) {
+        const auto triangle = static_cast<uint32_t>(made_.triangles.size());
+        made_.triangles.push_back({part[0].vertex, part[1].vertex, part[2].vertex});
+        made_.origins.push_back(coarse_.origins[of]), made_.labels.push_back(coarse_.labels[of]);
+        for (uint32_t k = 0; k < 3; ++k)
+            if (part[k].hasOwn) made_.cornerNormals.push_back({3 * triangle + k, part[k].normal});
+    }
+
+    const Chunk &coarse_, &fine_;
+    const Fits& fits_;
+    const uint32_t firstFine_;
+    Chunk made_;
+    std::vector<Changed> changed_;
+};
+
+/// The changed triangles that cross another one, as they are numbered in the coarse surface.
+std::vector<uint32_t> crossingTriangles(const JoinedSurface& joined, int threads, const Progress* progress) {
+    const Chunk& surface = joined.surface();
+    std::vector<Box3f> boxes;
+    std::vector<bool> isChanged(surface.triangles.size());
+    for (const auto& [t, before] : joined.changed()) {
+        boxes.push_back(boxOf(surface.positions, surface.triangles[t]));
+        isChanged[t] = true;
+    }
+    std::vector<uint32_t> crossing;
+    if (boxes.empty()) return crossing;
+    const BoxFinder finder(boxes);
+    std::mutex mutex;
+    const size_t steps = (surface.triangles.size() + trianglesAtOnce - 1) / trianglesAtOnce;
+    parallelFor(steps, threads, progress, [&](size_t step, int) {
+        std::vector<uint32_t> found, beside;
+        const size_t end = std::min(surface.triangles.size(), (step + 1) * trianglesAtOnce);
+        for (size_t t = step * trianglesAtOnce; t < end; ++t) {
+            finder.find(boxOf(surface.positions, surface.triangles[t]), beside);
+            for (const uint32_t b : beside) {
+                const auto& [other, before] = joined.changed()[b];
+                if (isChanged[t] && other <= t) continue;  // compared from the other one's side, or the same
+                if (meetWrongly(surface.positions, surface.triangles[t], surface.triangles[other]))
+                    found.push_back(before);
+            }
+        }
+        const std::lock_guard lock(mutex);
+        crossing.insert(crossing.end(), found.begin(), found.end());
+    });
+    std::sort(crossing.begin(), crossing.end());
+    crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
+    return crossing;
+}
+
+class Refiner {
+public:
+    Refiner(const Mesh& mesh, const eval::Tape& field, const Grid& grid, const RefineOptions& options,
+            Progress* progress)
+        : grid_(grid),
+          options_(options),
+          progress_(progress),
+          coarse_(joinChunks(mesh)),
+          coarseCells_(coarse_, grid),
+          mesher_(field, grid, options.halvings, options.threads, progress),
+          fineCells_(mesher_.surface(), grid) {
+        coarseCells_.follow(options.threads);
+    }
+
+    /// The surface and the cells that were meshed anew; these are none where it can't be done.
+    Result<std::pair<Chunk, CellSet>> refine(CellSet cells) {
+        mostCells_ = std::max(mostGrowth * cells.size(), leastGrowth);
+        if (guessTriangles(cells) > options_.mostTriangles) cells = {};
+        for (int fitting = 0; fitting < mostFittings && !cells.empty(); ++fitting) {
+            if (Status s = meshFinely(cells); !s) return s.error();
+            CellSet misfits = grow(cells);
+            if (hasNew(cells)) continue;
+            Fits fits;
+            if (misfits.empty()) misfits = join(cells, fits);
+            if (misfits.empty()) {
+                JoinedSurface joined(coarseCells_, fineCells_, cells, fits);
+                for (const uint32_t t : crossingTriangles(joined, options_.threads, progress_))
+                    misfits.insert(coarseCells_.cellOf(t));
+                if (misfits.empty() && !cancelled(progress_)) {
+                    Chunk made = joined.release();
+                    dropUnusedVertices(made);
+                    return std::pair(std::move(made), std::move(cells));
+                }
+            }
+            if (cancelled(progress_)) return cancelledError();
+            cells = componentsWithout(cells, misfits);
+        }
+        return std::pair(Chunk{}, CellSet{});
+    }
+
+private:
+    /// How many triangles the mesh may come to have, where the fine surface is about as large as the coarse one.
+    size_t guessTriangles(const CellSet& cells) const {
+        const auto full = static_cast<size_t>(
+            std::count_if(cells.list().begin(), cells.list().end(), [&](Vec3i c) { return !coarseCells_.isEmpty(c); }));
+        return coarse_.triangles.size() + (full * 2 << 2 * options_.halvings);
+    }
+
+    bool hasNew(const CellSet& cells) const {
+        return std::any_of(cells.list().begin(), cells.list().end(), [&](Vec3i c) { return !mesher_.has(c); });
+    }
+
+    /// Meshes cells that aren't meshed yet, and leaves out those that no surface reaches.
+    Status meshFinely(CellSet& cells) {
+        if (!hasNew(cells)) return Done{};
+        if (Status s = mesher_.add(cells); !s) return s;
+        fineCells_.follow(options_.threads);
+        CellSet reached;
+        for (const Vec3i cell : cells.list())
+            if (!coarseCells_.isEmpty(cell) || !fineCells_.isEmpty(cell)) reached.insert(cell);
+        cells = std::move(reached);
+        return Done{};
+    }
+
+    /// Adds cells beyond sides on which the surfaces don't fit, as far as the fine one is there. Returns those that are
+    /// too many.
+    CellSet grow(CellSet& cells) const {
+        CellSet tooMany;
+        for (size_t i = 0; i < cells.size(); ++i) {
+            if (!mesher_.has(cells.list()[i])) continue;
+            visitSides(cells.list()[i], [&](const CellSide& side) {
+                const Vec3i beyond = side.beyond();
+                if (cells.contains(beyond) || !isInGrid(beyond)) return;
+                if (!fitSeam(side, grid_, coarseCells_, fineCells_))
+                    (cells.size() < mostCells_ ? cells : tooMany).insert(beyond);
+            });
+        }
+        return tooMany;
+    }
+
+    bool isInGrid(Vec3i cell) const { return minComponent(cell) >= 0 && minComponent(grid_.cells - cell) > 0; }
+
+    /// Fits the surfaces on all sides of the cells. Returns the cells beyond those that say other than others.
+    CellSet join(const CellSet& cells, Fits& fits) const {
+        CellSet misfits;
+        fits.fineOf.assign(coarse_.positions.size(), noFine);
+        std::vector<uint32_t> coarseOf(mesher_.surface().positions.size(), noFine);
+        const auto joinVertex = [&](const SeamFit::Pair& pair) {
+            uint32_t &fine = fits.fineOf[pair.coarse], &coarse = coarseOf[pair.fine];
+            if (fine == noFine && coarse == noFine) fine = pair.fine, coarse = pair.coarse;
+            return fine == pair.fine && coarse == pair.coarse;
+        };
+        for (const Vec3i cell : cells.list())
+            visitSides(cell, [&](const CellSide& side) {
+                if (cells.contains(side.beyond()) || !isInGrid(side.beyond())) return;
+                auto fit = fitSeam(side, grid_, coarseCells_, fineCells_);
+                if (!fit || !std::all_of(fit->vertices.begin(), fit->vertices.end(), joinVertex)) {
+                    misfits.insert(side.beyond());
+                    return;
+                }
+                std::move(fit->edges.begin(), fit->edges.end(), std::back_inserter(fits.edges));
+            });
+        std::sort(fits.edges.begin(), fits.edges.end(), [](const SeamFit::Edge& a, const SeamFit::Edge& b) {
+            return std::pair(a.triangle, a.from) < std::pair(b.triangle, b.from);
+        });
+        return misfits;
+    }
+
+    const Grid& grid_;
+    const RefineOptions options_;
+    Progress* const progress_;
+    const Chunk coarse_;
+    SurfaceInCells coarseCells_;
+    FineCells mesher_;
+    SurfaceInCells fineCells_;
+    size_t mostCells_ = 0;  ///< there may come to be
+};
+
+}  // namespace
+
+Result<CellSet> refineCells(Mesh& mesh, const eval::Tape& field, const Grid& grid, const CellSet& cells,
+                            const RefineOptions& options, Progress* progress) {
+    if (cells.empty() || mesh.hasPositionsOnly()) return CellSet{};
+    auto refined = Refiner(mesh, field, grid, options, progress).refine(cells);
+    if (!refined.ok() && refined.error().kind == Error::Kind::Cancelled) return refined.error();
+    if (!refined.ok() || refined->second.empty()) return CellSet{};
+    mesh.chunks.clear();
+    mesh.chunks.push_back(std::move(refined->first));
+    return std::move(refined->second);
+}
+
+}  // namespace sgm::mesh

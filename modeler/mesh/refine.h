@@ -1,0 +1,28 @@
+// Cells of a mesh that are halved where they hold more than they can show.
+// Enters: a crisp mesh, its field, and cells. Leaves: the mesh with the surface of smaller cells in these. Assumes a
+// mesh as it comes from `polygonize`, or from this function: the surface is cut along the sides of the cells, and what
+// stays takes the vertices of the finer cut, so that nothing gapes.
+#pragma once
+
+#include "modeler/core/progress.h"
+#include "modeler/eval/tape.h"
+#include "modeler/mesh/cell_set.h"
+#include "modeler/mesh/mesh.h"
+
+namespace sgm::mesh {
+
+struct RefineOptions {
+    int halvings = 1;            ///< of the cells, 1 … 3
+    size_t mostTriangles = ~0u;  ///< nothing is done where the mesh would have more, by a guess
+    int threads = 0;             ///< 0: all; the result is the same for any number
+};
+
+/// Meshes `cells` of `grid` anew with smaller cells. Where the two surfaces don't fit on a side of the cells, more
+/// cells around are taken; where that doesn't help, or triangles would cross, a component of cells stays as it was.
+/// Returns the cells that were meshed anew; where there are any, the mesh has one chunk afterwards. None in a build
+/// without CGAL, and where smaller cells are too small or too many to be meshed. O(n) in the mesh, and what meshing the
+/// cells takes. Error::Cancelled, after which the mesh is as it was.
+Result<CellSet> refineCells(Mesh& mesh, const eval::Tape& field, const Grid& grid, const CellSet& cells,
+                            const RefineOptions& options, Progress* progress);
+
+}  // namespace sgm::mesh

@@ -1,0 +1,112 @@
+// Parts thinner than a cell in the meshes of models: halved cells hold them.
+#include "grammar/pipeline/refining.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "grammar/pipeline/incremental.h"
+#include "grammar/pipeline/missing.h"
+#include "modeler/mesh/components.h"
+#include "modeler/mesh/validate.h"
+#include "tests/mesh/mesh_bytes.h"
+#include "tests/pipeline/crisp_model.h"
+
+namespace sgm::pipeline {
+namespace {
+
+std::string sceneText(const std::string& name) {
+    std::ostringstream text;
+    text << std::ifstream("tests/mesh/scenes/" + name + ".sgm").rdbuf();
+    return text.str();
+}
+
+MeshedModel meshed(const Model& model, int resolution, int halvings) {
+    Context context{nullptr, 2};
+    auto made =
+        makeMesh(model, gridOf(model, resolution), {.surface = mesh::Surface::Crisp, .halvings = halvings}, context);
+    EXPECT_TRUE(made.ok());
+    return std::move(*made);
+}
+
+std::vector<lower::ThinPart> missingParts(const Model& model, const MeshedModel& meshed) {
+    auto found = findMissingParts(model, meshed, 2, nullptr);
+    EXPECT_TRUE(found.ok());
+    return std::move(*found);
+}
+
+Model modelOf(const std::string& text, Context& context) {
+    syntax::Diagnostics problems;
+    const auto grammar = load("test.sgm", text, problems);
+    EXPECT_TRUE(grammar) << text;
+    auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
+    EXPECT_TRUE(model.ok()) << text;
+    return std::move(*model);
+}
+
+/// Mullions, finials, railings and lamp posts of a fifth of a cell and more.
+TEST(Refining, ThinPartsOfTheTestScenesAreThere) {
+    for (const char* name : {"mullions", "finials", "lamps"}) {
+        Context context{nullptr, 2};
+        const Model model = modelOf(sceneText(name), context);
+        const MeshedModel coarse = meshed(model, 128, 0), fine = meshed(model, 128, 3);
+        EXPECT_FALSE(missingParts(model, coarse).empty()) << name;
+        EXPECT_TRUE(fine.missing->empty()) << name << ' ' << fine.missing->size();
+        const auto word = mesh::validate(fine.mesh);
+        EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects) << name;
+    }
+}
+
+/// Bars within the scope of a thicker part show after one halving more.
+TEST(Refining, CellsAreHalvedAgainWhereThePartIsThinnerThanItsScope) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\n"
+        "start A -> cube size (8m, 1m, 8m) + cube size (4m, 3m, .2m) at +y - Holes size (100%, 100%, 200%) move (0, "
+        "2m, 0)\n"
+        "rule Holes -> size (4m, 3m, .4m) split x { .1m: nil | { ~1: cube | .1m: nil }* }\n",
+        context);
+    const MeshedModel coarse = meshed(model, 32, 1), fine = meshed(model, 32, 3);
+    EXPECT_FALSE(missingParts(model, coarse).empty());
+    EXPECT_TRUE(fine.missing->empty());
+}
+
+TEST(Refining, WhatIsTooThinEvenForHalvedCellsIsNamed) {
+    Context context{nullptr, 2};
+    const Model model = modelOf("grammar 2\nstart A -> cube size 8m + cube size (.05m, 4m, .05m) at +y\n", context);
+    const MeshedModel made = meshed(model, 24, 3);
+    ASSERT_EQ(made.missing->size(), 1u);
+    EXPECT_NEAR((*made.missing)[0].thickness_m, .05, 1e-6);
+    EXPECT_EQ(made.mesh.triangleCount(), meshed(model, 24, 0).mesh.triangleCount());
+}
+
+TEST(Refining, FollowedStepsGiveTheBytesOfAWholeBuild) {
+    const std::string text =
+        "grammar 2\nparam w = .1m in .02m..1m\n"
+        "start A -> cube size 4m + cube size (w, 2m, w) at +y + cube size (3m, .06m, 3m) at -y\n";
+    syntax::Diagnostics problems;
+    const auto grammar = load("test.sgm", text, problems);
+    ASSERT_TRUE(grammar);
+    IncrementalPipeline followed({.surface = mesh::Surface::Crisp, .threads = 2});
+    for (const char* width : {"w=10cm", "w=7cm", "w=12cm"}) {
+        ModelChoice choice;
+        choice.settings = {width};
+        const auto options = optionsFor(*grammar, choice);
+        ASSERT_TRUE(options.ok());
+        Context context{nullptr, 2};
+        ASSERT_TRUE(followed.to(grammar, *options, context).ok());
+        const Model model = modelOf(text, context);
+        const mesh::Grid grid = gridOf(model, 32);
+        const auto step = followed.meshed(grid, context);
+        auto whole = makeModel(grammar, *options, context);
+        ASSERT_TRUE(whole.ok());
+        const auto all = makeMesh(*whole, grid, {.surface = mesh::Surface::Crisp}, context);
+        ASSERT_TRUE(step.ok() && all.ok());
+        EXPECT_EQ(mesh::bytesOf(step->mesh), mesh::bytesOf(all->mesh)) << width;
+        EXPECT_EQ(step->missing->size(), all->missing->size());
+    }
+}
+
+}  // namespace
+}  // namespace sgm::pipeline
