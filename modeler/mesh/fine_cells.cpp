@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "modeler/core/parallel.h"
 #include "modeler/mesh/chunk.h"
 #include "modeler/mesh/one_chunk.h"
 
@@ -44,51 +43,32 @@ Grid halved(const Grid& grid, int halvings) {
 }
 
 FineCells::FineCells(const eval::Tape& field, const Grid& grid, int halvings, int threads, Progress* progress)
-    : field_(field),
-      grid_(grid),
-      fine_(halved(grid, halvings)),
-      halvings_(halvings),
-      threads_(threads),
-      progress_(progress) {}
+    : field_(field), fine_(halved(grid, halvings)), halvings_(halvings), threads_(threads), progress_(progress) {}
 
 Vec3i FineCells::blockOf(Vec3i cell) const { return dividedBy(cell * (1 << halvings_), blockCells); }
 
-Status FineCells::add(const CellSet& cells) {
+Status FineCells::add(std::span<const Vec3i> cells) {
     if (Status status = checkGrid(fine_); !status) return status;
-    CellSet asked, added, missing;
-    for (const Vec3i cell : cells.list()) {
+    CellSet asked, missing;
+    for (const Vec3i cell : cells) {
         const Vec3i block = blockOf(cell);
-        if (!cells_.contains(cell)) asked.insert(block);
+        if (!held_.insert(block)) continue;
+        asked.insert(block);
         for (int below = 0; below < 8; ++below) {  // vertices on a block's low sides belong to the blocks below it
             const Vec3i lender = block - Vec3i{below & 1, below >> 1 & 1, below >> 2};
             if (minComponent(lender) >= 0 && made_.insert(lender)) missing.insert(lender);
         }
     }
-    for (const Vec3i cell : cells.list())
-        visitAround(cell, [&](Vec3i near) {
-            if (minComponent(near) >= 0 && asked.contains(blockOf(near)) && cells_.insert(near)) added.insert(near);
-        });
     if (!missing.empty())
         if (Status status = mesh(std::move(missing)); !status) return status;
-    appendSurface(added, asked);
-    return Done{};
-}
-
-/// Adds the triangles in cells that lie in these blocks.
-void FineCells::appendSurface(const CellSet& cells, const CellSet& blocks) {
-    std::vector<Chunk*> chunks;
-    for (Chunk& c : chunks_) {
-        if (!blocks.contains(c.block)) continue;
-        if (linked_.insert(c.block)) numberGhosts(chunks_, c);
-        chunks.push_back(&c);
+    for (const Vec3i block : asked.list()) {
+        const auto at = std::lower_bound(chunks_.begin(), chunks_.end(), block,
+                                         [](const Chunk& c, Vec3i index) { return zyxLess(c.block, index); });
+        if (at == chunks_.end() || at->block != block) continue;
+        numberGhosts(chunks_, *at);
+        appendTriangles(surface_, *at);
     }
-    std::vector<std::vector<uint32_t>> wanted(chunks.size());
-    parallelFor(chunks.size(), threads_, nullptr, [&](size_t i, int) {
-        const Chunk& c = *chunks[i];
-        for (uint32_t t = 0; t < c.triangles.size(); ++t)
-            if (cells.contains(cellOf(grid_, surface_.positions, c.inMesh(c.triangles[t])))) wanted[i].push_back(t);
-    });
-    for (size_t i = 0; i < chunks.size(); ++i) appendTriangles(surface_, *chunks[i], wanted[i]);
+    return Done{};
 }
 
 /// Meshes blocks and adds their vertices.

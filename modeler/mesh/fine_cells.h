@@ -22,24 +22,22 @@ public:
     FineCells(const eval::Tape& field, const Grid& grid, int halvings, int threads, Progress* progress);
 
     /// Whether the surface in a cell is there.
-    bool has(Vec3i cell) const { return cells_.contains(cell); }
-    /// Meshes cells, and neighbours in their blocks. Errors as of subdivide and polygonize, and Error::Budget for 2³¹
+    bool has(Vec3i cell) const { return held_.contains(blockOf(cell)); }
+    /// Meshes cells, and others in their blocks. Errors as of subdivide and polygonize, and Error::Budget for 2³¹
     /// vertices.
-    Status add(const CellSet& cells);
-    /// The surface in these cells; it ends on their sides. What is new comes behind what was there.
+    Status add(std::span<const Vec3i> cells);
+    /// The surface in them; it ends on their sides. What is new comes behind what was there.
     const Chunk& surface() const { return surface_; }
 
 private:
     Vec3i blockOf(Vec3i cell) const;
     Status mesh(CellSet blocks);
-    void appendSurface(const CellSet& cells, const CellSet& blocks);
 
     const eval::Tape& field_;
-    const Grid grid_, fine_;
+    const Grid fine_;
     const int halvings_, threads_;
     Progress* const progress_;
-    CellSet cells_;              ///< of the grid, whose surface is there
-    CellSet linked_;             ///< blocks that hold some of them
+    CellSet held_;               ///< blocks whose triangles are there
     CellSet made_;               ///< these and the ones that own vertices of theirs
     std::vector<Chunk> chunks_;  ///< in order of (z, y, x), numbered as they came; none without surface
     Chunk surface_;

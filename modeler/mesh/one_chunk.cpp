@@ -23,18 +23,6 @@ void appendTriangles(Chunk& whole, const Chunk& c) {
     for (const CornerNormal& n : c.cornerNormals) whole.cornerNormals.push_back({3 * first + n.corner, n.normal});
 }
 
-void appendTriangles(Chunk& whole, const Chunk& c, std::span<const uint32_t> triangles) {
-    auto normal = c.cornerNormals.begin();
-    for (const uint32_t t : triangles) {
-        while (normal != c.cornerNormals.end() && normal->corner < 3 * t) ++normal;
-        const auto number = static_cast<uint32_t>(whole.triangles.size());
-        for (; normal != c.cornerNormals.end() && normal->corner / 3 == t; ++normal)
-            whole.cornerNormals.push_back({3 * number + normal->corner % 3, normal->normal});
-        whole.triangles.push_back(c.inMesh(c.triangles[t]));
-        whole.origins.push_back(c.origins[t]), whole.labels.push_back(c.labels[t]);
-    }
-}
-
 Chunk joinChunks(const Mesh& mesh) {
     Chunk whole;
     const size_t vertices = mesh.vertexCount(), triangles = mesh.triangleCount();

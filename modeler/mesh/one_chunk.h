@@ -12,8 +12,6 @@ namespace sgm::mesh {
 void appendVertices(Chunk& whole, const Chunk& chunk);
 /// Adds a chunk's triangles; `whole` has, or gets, all vertices by their numbers in the mesh.
 void appendTriangles(Chunk& whole, const Chunk& chunk);
-/// Adds some of them, ascending.
-void appendTriangles(Chunk& whole, const Chunk& chunk, std::span<const uint32_t> triangles);
 /// All that a mesh has in one chunk, in its order. O(n).
 Chunk joinChunks(const Mesh& mesh);
 

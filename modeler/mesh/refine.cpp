@@ -15,7 +15,7 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr int mostFittings = 24;            ///< of the cells, which grow or shrink each time
+constexpr int mostFittings = 24;            ///< of the cells, which shrink each time
 constexpr size_t mostGrowth = 4;            ///< times the cells that were asked for there may come to be
 constexpr size_t leastGrowth = 4096;        ///< as many may always
 constexpr size_t trianglesAtOnce = 4096;    ///< of a parallel loop
@@ -214,26 +214,27 @@ public:
 
     /// The surface and the cells that were meshed anew; these are none where it can't be done.
     Result<std::pair<Chunk, CellSet>> refine(CellSet cells) {
-        mostCells_ = std::max(mostGrowth * cells.size(), leastGrowth);
+        const size_t mostCells = std::max(mostGrowth * cells.size(), leastGrowth);
         if (guessTriangles(cells) > options_.mostTriangles) cells = {};
+        if (Status s = meshFinely(cells.list()); !s) return s.error();
+        cells = reachedOf(cells);
         for (int fitting = 0; fitting < mostFittings && !cells.empty(); ++fitting) {
-            if (Status s = meshFinely(cells); !s) return s.error();
-            CellSet misfits = grow(cells);
-            if (hasNew(cells)) continue;
+            Result<CellSet> misfits = grow(cells, mostCells);
+            if (!misfits.ok()) return misfits.error();
             Fits fits;
-            if (misfits.empty()) misfits = join(cells, fits);
-            if (misfits.empty()) {
+            if (misfits->empty()) misfits = join(cells, fits);
+            if (misfits->empty()) {
                 JoinedSurface joined(coarseCells_, fineCells_, cells, fits);
                 for (const uint32_t t : crossingTriangles(joined, options_.threads, progress_))
-                    misfits.insert(coarseCells_.cellOf(t));
-                if (misfits.empty() && !cancelled(progress_)) {
+                    misfits->insert(coarseCells_.cellOf(t));
+                if (misfits->empty() && !cancelled(progress_)) {
                     Chunk made = joined.release();
                     dropUnusedVertices(made);
                     return std::pair(std::move(made), std::move(cells));
                 }
             }
             if (cancelled(progress_)) return cancelledError();
-            cells = componentsWithout(cells, misfits);
+            cells = componentsWithout(cells, *misfits);
         }
         return std::pair(Chunk{}, CellSet{});
     }
@@ -246,36 +247,47 @@ private:
         return coarse_.triangles.size() + (full * 2 << 2 * options_.halvings);
     }
 
-    bool hasNew(const CellSet& cells) const {
-        return std::any_of(cells.list().begin(), cells.list().end(), [&](Vec3i c) { return !mesher_.has(c); });
-    }
-
-    /// Meshes cells that aren't meshed yet, and leaves out those that no surface reaches.
-    Status meshFinely(CellSet& cells) {
-        if (!hasNew(cells)) return Done{};
+    Status meshFinely(std::span<const Vec3i> cells) {
+        if (cancelled(progress_)) return cancelledError();
         if (Status s = mesher_.add(cells); !s) return s;
         fineCells_.follow(options_.threads);
-        CellSet reached;
-        for (const Vec3i cell : cells.list())
-            if (!coarseCells_.isEmpty(cell) || !fineCells_.isEmpty(cell)) reached.insert(cell);
-        cells = std::move(reached);
         return Done{};
     }
 
-    /// Adds cells beyond sides on which the surfaces don't fit, as far as the fine one is there. Returns those that are
-    /// too many.
-    CellSet grow(CellSet& cells) const {
+    /// Those that some surface reaches.
+    CellSet reachedOf(const CellSet& cells) const {
+        CellSet reached;
+        for (const Vec3i cell : cells.list())
+            if (!coarseCells_.isEmpty(cell) || !fineCells_.isEmpty(cell)) reached.insert(cell);
+        return reached;
+    }
+
+    /// Adds cells beyond sides on which the surfaces don't fit, until they do. Returns those that are too many.
+    Result<CellSet> grow(CellSet& cells, size_t mostCells) {
         CellSet tooMany;
-        for (size_t i = 0; i < cells.size(); ++i) {
-            if (!mesher_.has(cells.list()[i])) continue;
-            visitSides(cells.list()[i], [&](const CellSide& side) {
-                const Vec3i beyond = side.beyond();
-                if (cells.contains(beyond) || !isInGrid(beyond)) return;
-                if (!fitSeam(side, grid_, coarseCells_, fineCells_))
-                    (cells.size() < mostCells_ ? cells : tooMany).insert(beyond);
-            });
+        std::vector<Vec3i> open = cells.list(), unmeshed;
+        for (;;) {
+            while (!open.empty()) {
+                const Vec3i cell = open.back();
+                open.pop_back();
+                if (!mesher_.has(cell)) {
+                    unmeshed.push_back(cell);
+                    continue;
+                }
+                visitSides(cell, [&](const CellSide& side) {
+                    const Vec3i beyond = side.beyond();
+                    if (cells.contains(beyond) || !isInGrid(beyond)) return;
+                    if (fitSeam(side, grid_, coarseCells_, fineCells_)) return;
+                    if (cells.size() >= mostCells)
+                        tooMany.insert(beyond);
+                    else if (cells.insert(beyond))
+                        open.push_back(beyond);
+                });
+            }
+            if (unmeshed.empty()) return tooMany;
+            if (Status s = meshFinely(unmeshed); !s) return s.error();
+            open.swap(unmeshed);
         }
-        return tooMany;
     }
 
     bool isInGrid(Vec3i cell) const { return minComponent(cell) >= 0 && minComponent(grid_.cells - cell) > 0; }
@@ -313,7 +325,6 @@ private:
     SurfaceInCells coarseCells_;
     FineCells mesher_;
     SurfaceInCells fineCells_;
-    size_t mostCells_ = 0;  ///< there may come to be
 };
 
 }  // namespace
