@@ -5,11 +5,12 @@
 
 #include "grammar/lower/thin_cells.h"
 #include "modeler/mesh/refine.h"
+#include "modeler/mesh/region.h"
 
 namespace sgm::pipeline {
 namespace {
 
-constexpr size_t mostGrowth = 4, leastBound = 500000;  ///< of triangles
+constexpr size_t mostGrowth = 4, leastBound = 300000;  ///< of triangles
 constexpr double cellsPerTriangle = 16;                ///< at most looked at, of the triangles that the mesh may have
 constexpr int mostHalvingsOfCells = 3;
 
@@ -22,7 +23,7 @@ public:
         : model_(model),
           mesh_(mesh),
           grid_(grid),
-          most_(std::min(mostHalvings, mostHalvingsOfCells)),
+          most_(mesh::isExpensive(model.tape) ? 0 : std::min(mostHalvings, mostHalvingsOfCells)),
           context_(context),
           mostTriangles_(std::max(mostGrowth * mesh.triangleCount(), leastBound)) {}
 

@@ -17,6 +17,11 @@ inline Box3f boxOf(std::span<const Vec3f> positions, const Triangle& t) {
     return hull(hull(Box3f{positions[t.x], positions[t.x]}, positions[t.y]), positions[t.z]);
 }
 
+/// The cube that reaches so many metres from its middle.
+inline Box3f cubeAround(Vec3f middle, double reach_m) {
+    return Box3f{middle, middle}.inflated(static_cast<float>(reach_m));
+}
+
 /// An index over boxes that don't change.
 class BoxFinder {
 public:

@@ -16,8 +16,8 @@ namespace sgm::mesh {
 namespace {
 
 constexpr int mostFittings = 24;            ///< of the cells, which shrink each time
-constexpr size_t mostGrowth = 4;            ///< times the cells that were asked for there may come to be
-constexpr size_t leastGrowth = 4096;        ///< as many may always
+constexpr size_t mostGrowth = 2;            ///< times the cells that were asked for there may come to be
+constexpr size_t leastGrowth = 512;         ///< as many may always
 constexpr size_t trianglesAtOnce = 4096;    ///< of a parallel loop
 constexpr float sameNormal = 1.0f - 1e-5f;  ///< cosine between normals that needn't be told apart
 constexpr uint32_t noFine = 0xffffffffu;

@@ -17,8 +17,9 @@ constexpr Label noLabel = 0xffffffffu;
 /// The mean of the normals around a tip is shorter: as of smooth cones within 45° of their axis, and as of pyramids
 /// within 30°, for along edges of 90° it is .7 or more.
 constexpr float widestSmooth = 0.85f, widestCreased = 0.7f;
-constexpr size_t mostOfPart = 64;  ///< candidates, and as many within a cell: a part with more is a fractal or rough
-constexpr double nearer = 0.25;    ///< of the way from a vertex to its apex: no other vertex is as near to that
+constexpr size_t mostOfPart = 64;     ///< candidates, and as many within a cell: a part with more is a fractal or rough
+constexpr size_t mostCreased = 1024;  ///< vertices of a part, by whose creases planes are looked for farther away
+constexpr double nearer = 0.25;       ///< of the way from a vertex to its apex: no other vertex is as near to that
 // In cells:
 constexpr double nearestApex = 0.05, farthestApex = 16;  ///< from the vertex below it
 constexpr double nearestCorner = 0.2;                    ///< the same where creases meet
@@ -243,6 +244,9 @@ private:
             else
                 candidates_.push_back(c);
         }
+        std::map<OriginId, size_t> counts;
+        for (const WideVertex& at : creased) ++counts[at.origin];
+        std::erase_if(creased, [&](const WideVertex& at) { return counts[at.origin] > mostCreased; });
         addPlanesAround(creased);
         for (const Candidate& c : candidatesOf(creased)) candidates_.push_back(c);
         keep(candidates_, [isReached = reachedApexes()](size_t i) { return !isReached[i]; });
@@ -367,10 +371,6 @@ private:
             std::swap(fans[kept++], fans[i]);
         }
         fans.resize(kept);
-    }
-
-    static Box3f cubeAround(Vec3f middle, double reach_m) {
-        return Box3f{middle, middle}.inflated(static_cast<float>(reach_m));
     }
 
     const Mesh& mesh_;
