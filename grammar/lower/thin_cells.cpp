@@ -11,29 +11,6 @@ namespace {
 
 constexpr double around = 1.5;  ///< in cells: from a scope to the middles of the cells around it
 
-/// Calls `visit` with the cells whose middles are so near to a scope.
-template <class Visit>
-void visitCells(const derive::Scope& scope, const mesh::Grid& grid, Visit&& visit) {
-    const double cell = static_cast<double>(grid.cell_m), reach_m = around * cell;
-    const Box3d box = derive::boxOf(scope).inflated(reach_m);
-    const Vec3d origin = grid.origin.as<double>(), half = scope.half();
-    const auto clamped = [&](Vec3d p, int axis) {
-        return static_cast<int>(
-            std::clamp(std::floor((p[axis] - origin[axis]) / cell), 0.0, static_cast<double>(grid.cells[axis] - 1)));
-    };
-    const Vec3i first{clamped(box.lo, 0), clamped(box.lo, 1), clamped(box.lo, 2)};
-    const Vec3i last{clamped(box.hi, 0), clamped(box.hi, 1), clamped(box.hi, 2)};
-    const Mat3 local = scope.axes.transposed();
-    for (int z = first.z; z <= last.z; ++z)
-        for (int y = first.y; y <= last.y; ++y)
-            for (int x = first.x; x <= last.x; ++x) {
-                const Vec3d middle = origin + Vec3d{x + 0.5, y + 0.5, z + 0.5} * cell;
-                const Vec3d p = local * (middle - scope.centre);
-                const Vec3d beyond = max(Vec3d{std::abs(p.x), std::abs(p.y), std::abs(p.z)} - half, Vec3d{});
-                if (dot(beyond, beyond) <= reach_m * reach_m) visit(Vec3i{x, y, z});
-            }
-}
-
 }  // namespace
 
 int halvingsFor(const ThinPart& part, float cell_m) {
@@ -52,8 +29,25 @@ double countCellsAround(const ThinPart& part, const derive::Derivation& derivati
 
 void addCellsAround(const ThinPart& part, const derive::Derivation& derivation, const Model& model,
                     const mesh::Grid& grid, mesh::CellSet& cells) {
-    visitCells(derive::liftedScope(derivation, model.shapeOf[part.part]), grid,
-               [&](Vec3i cell) { cells.insert(cell); });
+    const derive::Scope scope = derive::liftedScope(derivation, model.shapeOf[part.part]);
+    const double cell = static_cast<double>(grid.cell_m), reach_m = around * cell;
+    const Box3d box = derive::boxOf(scope).inflated(reach_m);
+    const Vec3d origin = grid.origin.as<double>(), half = scope.half();
+    const auto clamped = [&](Vec3d p, int axis) {
+        return static_cast<int>(
+            std::clamp(std::floor((p[axis] - origin[axis]) / cell), 0.0, static_cast<double>(grid.cells[axis] - 1)));
+    };
+    const Vec3i first{clamped(box.lo, 0), clamped(box.lo, 1), clamped(box.lo, 2)};
+    const Vec3i last{clamped(box.hi, 0), clamped(box.hi, 1), clamped(box.hi, 2)};
+    const Mat3 local = scope.axes.transposed();
+    for (int z = first.z; z <= last.z; ++z)
+        for (int y = first.y; y <= last.y; ++y)
+            for (int x = first.x; x <= last.x; ++x) {
+                const Vec3d middle = origin + Vec3d{x + 0.5, y + 0.5, z + 0.5} * cell;
+                const Vec3d p = local * (middle - scope.centre);
+                const Vec3d beyond = max(Vec3d{std::abs(p.x), std::abs(p.y), std::abs(p.z)} - half, Vec3d{});
+                if (dot(beyond, beyond) <= reach_m * reach_m) cells.insert({x, y, z});
+            }
 }
 
 }  // namespace sgm::lower

@@ -1,6 +1,7 @@
 #include "grammar/pipeline/refining.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "grammar/lower/thin_cells.h"
@@ -66,7 +67,7 @@ private:
         return cells;
     }
 
-    /// How often some of the cells, or cells beside them, were halved.
+    /// How often some of the cells were halved at most.
     int halvingsIn(const mesh::CellSet& cells) const {
         for (int halvings = most_; halvings > 0; --halvings) {
             const mesh::CellSet& halved = halved_[static_cast<size_t>(halvings)];

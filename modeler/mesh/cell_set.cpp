@@ -10,10 +10,10 @@ void CellNumbers::grow() {
 }
 
 CellSet componentsWithout(const CellSet& cells, const CellSet& others) {
-    CellSet left_out;
+    CellSet leftOut;
     std::vector<Vec3i> open;
     const auto enter = [&](Vec3i cell) {
-        if (cells.contains(cell) && left_out.insert(cell)) open.push_back(cell);
+        if (cells.contains(cell) && leftOut.insert(cell)) open.push_back(cell);
     };
     for (const Vec3i cell : others.list()) visitAround(cell, enter);
     while (!open.empty()) {
@@ -23,7 +23,7 @@ CellSet componentsWithout(const CellSet& cells, const CellSet& others) {
     }
     CellSet kept;
     for (const Vec3i cell : cells.list())
-        if (!left_out.contains(cell)) kept.insert(cell);
+        if (!leftOut.contains(cell)) kept.insert(cell);
     return kept;
 }
 

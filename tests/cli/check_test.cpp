@@ -47,6 +47,7 @@ TEST_F(Check, LooksAtTheCellsThatAreAskedFor) {
     expectRefused(beam, "2:1",
                   "there is no surface at cells of 78.1 m, for no part is thicker than 1 m: cells of half of");
     EXPECT_EQ(checked(beam, " --cell 5").code, 0);
+    EXPECT_EQ(checked("start A -> cube size (1000, 1, 1)\n").code, 0);  // halved cells hold it
 }
 
 TEST_F(Check, BudgetsAreExitCodeThree) {

@@ -25,18 +25,24 @@ struct CrispModel {
     }
 };
 
-/// `resolution` cells along the longest side, halved up to `halvings` times around thin parts. A text with errors fails
-/// the test, and the program ends.
-inline CrispModel crispModel(const std::string& text, int resolution, Context& context, int halvings = 3) {
+/// A text with errors fails the test, and the program ends.
+inline Model modelOf(const std::string& text, Context& context) {
     syntax::Diagnostics problems;
     const auto grammar = load("test.sgm", text, problems);
     EXPECT_TRUE(grammar) << text;
     auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
     EXPECT_TRUE(model.ok()) << text;
-    const mesh::Grid grid = gridOf(*model, resolution);
-    auto meshed = makeMesh(*model, grid, {.surface = mesh::Surface::Crisp, .halvings = halvings}, context);
+    return std::move(*model);
+}
+
+/// `resolution` cells along the longest side, halved up to `halvings` times around thin parts. A text with errors fails
+/// the test, and the program ends.
+inline CrispModel crispModel(const std::string& text, int resolution, Context& context, int halvings = 3) {
+    Model model = modelOf(text, context);
+    const mesh::Grid grid = gridOf(model, resolution);
+    auto meshed = makeMesh(model, grid, {.surface = mesh::Surface::Crisp, .halvings = halvings}, context);
     EXPECT_TRUE(meshed.ok()) << text;
-    return {std::move(*model), grid, std::move(meshed->mesh)};
+    return {std::move(model), grid, std::move(meshed->mesh)};
 }
 
 }  // namespace sgm::pipeline

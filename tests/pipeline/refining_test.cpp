@@ -36,15 +36,6 @@ std::vector<lower::ThinPart> missingParts(const Model& model, const MeshedModel&
     return std::move(*found);
 }
 
-Model modelOf(const std::string& text, Context& context) {
-    syntax::Diagnostics problems;
-    const auto grammar = load("test.sgm", text, problems);
-    EXPECT_TRUE(grammar) << text;
-    auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
-    EXPECT_TRUE(model.ok()) << text;
-    return std::move(*model);
-}
-
 /// Mullions, finials, railings and lamp posts of a fifth of a cell and more.
 TEST(Refining, ThinPartsOfTheTestScenesAreThere) {
     for (const char* name : {"mullions", "finials", "lamps"}) {
