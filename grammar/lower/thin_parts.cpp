@@ -260,23 +260,27 @@ double wallOf(const derive::SolidValue& solid) {
 
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
-                                               int threads, Progress* progress) {
+                                               int threads, Progress* progress, const std::vector<ThinPart>* among) {
     const auto cell = static_cast<double>(cell_m);
     std::vector<Candidate> thin;
     std::deque<derive::Scope> scopes;  // where they stand on hills; a deque, for references stay
     std::vector<bool> isThin(model.shapeOf.size());
-    for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
-        if (model.shapeOf[part] == derive::none) continue;
+    const auto look = [&](OriginId part) {
+        if (model.shapeOf[part] == derive::none) return;
         const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
-        if (shape.solid == derive::none) continue;
+        if (shape.solid == derive::none) return;
         const bool isFlat = cellThatHolds(shape.scope) < cell;
         const double wall_m = isFlat ? 0 : wallOf(derivation.tree.solids[shape.solid]);
-        if (!isFlat && !(wall_m / leaningWall < cell)) continue;
+        if (!isFlat && !(wall_m / leaningWall < cell)) return;
         scopes.push_back(derive::liftedScope(derivation, model.shapeOf[part]));
         thin.push_back({part, &scopes.back(), wall_m});
         if (isFlat) thin.back().plateAxis = plateAxis(scopes.back(), cell);
         isThin[part] = true;
-    }
+    };
+    if (among)
+        for (const ThinPart& part : *among) look(part.part);
+    else
+        for (OriginId part = 1; part < model.shapeOf.size(); ++part) look(part);
     if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     const Presence presence(mesh, isThin, cell_m);
     measureFacing(mesh, thin, model.shapeOf.size());

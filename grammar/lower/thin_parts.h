@@ -22,11 +22,12 @@ struct ThinPart {
 /// are open below): on lines through the scope along its thin axes, upright ones for walls, where does the field's
 /// surface belong to the part, and has the mesh a triangle of the part there? Of a plate that stands free, does the
 /// mesh cover its faces? Those that lack more than a tenth, ascending by part. What else is thin within a thicker
-/// scope, as a needle's point or a fractal's ornament, isn't looked for. Empty for a mesh without origins. About 4,000
-/// evaluations of a shortened tape a thin part, 33,000 at most for walls, O(n log n); `threads` 0: all.
-/// Error::Cancelled.
+/// scope, as a needle's point or a fractal's ornament, isn't looked for. Empty for a mesh without origins. Only parts
+/// `among` others are looked at, where that isn't null. About 4,000 evaluations of a shortened tape a thin part, 33,000
+/// at most for walls, O(n log n); `threads` 0: all. Error::Cancelled.
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
-                                               int threads, Progress* progress);
+                                               int threads, Progress* progress,
+                                               const std::vector<ThinPart>* among = nullptr);
 
 }  // namespace sgm::lower

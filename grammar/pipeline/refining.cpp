@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 
 #include "grammar/lower/thin_cells.h"
 #include "modeler/mesh/refine.h"
@@ -29,12 +30,14 @@ public:
           mostTriangles_(std::max(mostGrowth * mesh.triangleCount(), leastBound)) {}
 
     /// Cells around what the mesh lacks are meshed anew, and again with smaller ones while some of it is still missing:
-    /// within its scope a part may be thinner.
+    /// within its scope a part may be thinner. What isn't missing stays so, for smaller cells have the larger ones'
+    /// corners.
     Result<std::vector<lower::ThinPart>> run() {
+        std::optional<std::vector<lower::ThinPart>> before;
         for (;;) {
             const Stopwatch finding;
             auto missing = lower::findMissingParts(model_.derivation, *model_.lowered, model_.tape, mesh_, grid_.cell_m,
-                                                   context_.threads, context_.progress);
+                                                   context_.threads, context_.progress, before ? &*before : nullptr);
             findingSeconds_ += finding.seconds();
             if (!missing.ok()) return missing;
             const HalvedCells cells = cellsAround(*missing);
@@ -42,7 +45,10 @@ public:
             for (int halvings = 1; halvings <= most_; ++halvings)
                 if (const Status s = refine(cells[static_cast<size_t>(halvings)], halvings, isRefined); !s.ok())
                     return s.error();
-            if (isRefined) continue;
+            if (isRefined) {
+                before = std::move(*missing);
+                continue;
+            }
             context_.stages.emplace_back("thin parts", findingSeconds_);
             if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
             return missing;

@@ -80,6 +80,10 @@ void visitAround(Vec3i cell, Visit&& visit) {
 /// Those of the components of `cells` to which none of `others` belongs or is next, edges and corners included. O(n).
 CellSet componentsWithout(const CellSet& cells, const CellSet& others);
 
+inline bool isInGrid(const Grid& grid, Vec3i cell) {
+    return minComponent(cell) >= 0 && minComponent(grid.cells - cell) > 0;
+}
+
 /// The cell of a grid that holds a point of its box; its sides belong to the higher one.
 Vec3i cellAt(const Grid& grid, Vec3d p);
 

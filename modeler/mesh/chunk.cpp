@@ -74,6 +74,22 @@ int sidesAt(int side, Vec3i at, int axis) {
     return ((at.x == side ? 1 : 0) | (at.y == side ? 2 : 0) | (at.z == side ? 4 : 0)) & ~(1 << axis);
 }
 
+/// Moves those cells of a brick that are in a part to the front; returns how many.
+size_t keepPart(const PartOfBlock& part, Vec3i brick, std::span<SurfaceCell> cells) {
+    const uint64_t cubes = part.cubes[static_cast<size_t>(brickNumber(brick))];
+    const int along = brickCells / part.cubeCells;
+    size_t kept = 0;
+    for (const SurfaceCell& cell : cells) {
+        const int corner = cell.corner;
+        const Vec3i at =
+            Vec3i{corner % blockCorners, corner / blockCorners % blockCorners, corner / (blockCorners * blockCorners)} -
+            brick * brickCells;
+        const Vec3i cube{at.x / part.cubeCells, at.y / part.cubeCells, at.z / part.cubeCells};
+        if (cubes >> (cube.x + along * (cube.y + along * cube.z)) & 1) cells[kept++] = cell;
+    }
+    return kept;
+}
+
 /// Whether a shortened form of a tape is all of it, so that either will do.
 bool leavesNothingOut(const eval::Tape& shortened, const eval::Tape& whole) {
     return shortened.size() == whole.size() && shortened.sources().size() == whole.sources().size();
@@ -111,7 +127,7 @@ bool BlockMesher::mesh(const Block& block, const Progress* progress, Chunk& chun
     for (uint64_t rest = samples_.active(); rest != 0; rest &= rest - 1) {
         if (cancelled(progress)) return false;
         const int brick = std::countr_zero(rest);
-        addBrick(brick, sampled(brick), block.tape);
+        addBrick(brick, sampled(brick), block);
     }
     if (cut_.waiting > 0) findWaiting(block.tape);
     counts_.sampleSeconds += sampling.seconds();
@@ -148,16 +164,17 @@ const eval::Tape& BlockMesher::sampled(int brick) {
     return samples_.sample(brick, workspace_, counts_);
 }
 
-/// The brick's cells with surface; returns how many.
-size_t BlockMesher::addCells(const BrickSigns& signs, Vec3i brick) {
+/// Adds the brick's cells with surface, those in the part; returns whether there are any in or out of it.
+bool BlockMesher::addCells(const BrickSigns& signs, Vec3i brick, const PartOfBlock* part) {
     SurfaceCell* const cells = cells_.list.data() + cells_.count;
-    const size_t count = brickLoops().cells(signs.low.data(), signs.high.data(), brickCorner(brick), blockCorners,
+    const size_t found = brickLoops().cells(signs.low.data(), signs.high.data(), brickCorner(brick), blockCorners,
                                             blockCorners * blockCorners, cells);
+    const size_t count = part ? keepPart(*part, brick, {cells, found}) : found;
     const uint8_t* const triangles = triangleCounts().data();
     for (size_t c = 0; c < count; ++c) cells_.triangles += triangles[cells[c].inside];
     cells_.count += count;
     counts_.surfaceCells += count;
-    return count;
+    return found > 0;
 }
 
 /// The brick's own edges that the surface cuts, one after the other as their vertices are numbered from vertices_.count
@@ -276,21 +293,21 @@ std::optional<OriginId> BlockMesher::ownerAround(Vec3i brick, OriginId owner) co
     return owner;
 }
 
-void BlockMesher::addBrick(int number, const eval::Tape& tape, const eval::Tape& whole) {
+void BlockMesher::addBrick(int number, const eval::Tape& tape, const Block& block) {
     const Vec3i brick = brickAt(number);
     const BrickSigns signs(samples_.values(number));
-    if (addCells(signs, brick) == 0) return;
+    if (!addCells(signs, brick, block.part.get())) return;
     if (crisp_) return addCrispBrick(brick, signs, tape);
     std::optional<OriginId> owner = onlyOwner(tape);
-    const bool mayWait = owner && leavesNothingOut(tape, whole);
-    if (!mayWait && cut_.waiting > 0) findWaiting(whole);
+    const bool mayWait = owner && leavesNothingOut(tape, block.tape);
+    if (!mayWait && cut_.waiting > 0) findWaiting(block.tape);
     addOwnEdges(signs);
     if (lowSidesOf(brick) != 0) addGhosts(signs, brick, owner);
     placeEdges(brick);
     if (highSidesOf(brick) != 0) addShared(signs, brick);
     if (mayWait) {
         cut_.waiting += cut_.own;
-        if (cut_.waiting >= enoughEdges) findWaiting(whole);
+        if (cut_.waiting >= enoughEdges) findWaiting(block.tape);
     } else {
         findPlaces(tape, cut_.own);
     }

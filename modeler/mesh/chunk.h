@@ -92,8 +92,8 @@ private:
     void clear();
     const eval::Tape& sampled(int brick);
     std::optional<OriginId> onlyOwner(const eval::Tape& tape) const;
-    void addBrick(int number, const eval::Tape& tape, const eval::Tape& whole);
-    size_t addCells(const BrickSigns& signs, Vec3i brick);
+    void addBrick(int number, const eval::Tape& tape, const Block& block);
+    bool addCells(const BrickSigns& signs, Vec3i brick, const PartOfBlock* part);
     void addOwnEdges(const BrickSigns& signs);
     void addGhosts(const BrickSigns& signs, Vec3i brick, std::optional<OriginId> owner);
     void placeEdges(Vec3i brick);

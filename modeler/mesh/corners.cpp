@@ -1,21 +1,12 @@
 #include "modeler/mesh/corners.h"
 
-#include <bit>
 #include <unordered_map>
 
-#include "modeler/core/random.h"
+#include "modeler/core/vec_hash.h"
 #include "modeler/mesh/components.h"
 
 namespace sgm::mesh {
 namespace {
-
-struct NormalHash {
-    size_t operator()(const Vec3f& n) const {
-        uint64_t h = std::bit_cast<uint32_t>(n.x);
-        h = combine(h, std::bit_cast<uint32_t>(n.y));
-        return combine(h, std::bit_cast<uint32_t>(n.z));
-    }
-};
 
 /// Numbers the normals of corners whose vertices have several, and says when two are the same to the eye.
 class NormalNumbers {
@@ -100,7 +91,7 @@ CornerNormalTable collectCornerNormals(const Mesh& mesh) {
     if (std::all_of(mesh.chunks.begin(), mesh.chunks.end(), [](const Chunk& c) { return c.cornerNormals.empty(); }))
         return table;
     table.of.assign(mesh.triangleCount(), {noIndex, noIndex, noIndex});
-    std::unordered_map<Vec3f, uint32_t, NormalHash> known;
+    std::unordered_map<Vec3f, uint32_t, Vec3fHash> known;
     size_t first = 0;
     for (const Chunk& c : mesh.chunks) {
         for (const CornerNormal& own : c.cornerNormals) {

@@ -66,7 +66,7 @@ Result<std::vector<Chunk>> chunksOf(std::span<const Block> blocks, const Grid& g
     counts += counted;
     for (const eval::Tally& tally : tallies)
         for (const auto& [operation, points] : tally) (*options.tally)[operation] += points;
-    std::erase_if(chunks, [](const Chunk& c) { return c.triangles.empty(); });
+    std::erase_if(chunks, [](const Chunk& c) { return c.triangles.empty() && c.positions.empty(); });
     return chunks;
 }
 

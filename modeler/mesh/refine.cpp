@@ -17,6 +17,7 @@ namespace {
 
 constexpr int mostFittings = 24;            ///< of the cells, which shrink each time
 constexpr size_t mostGrowth = 2;            ///< times the cells that were asked for there may come to be
+constexpr size_t marginShare = 4;           ///< as many cells more are meshed at once where they grow, of all
 constexpr size_t leastGrowth = 512;         ///< as many may always
 constexpr size_t trianglesAtOnce = 4096;    ///< of a parallel loop
 constexpr float sameNormal = 1.0f - 1e-5f;  ///< cosine between normals that needn't be told apart
@@ -254,6 +255,20 @@ private:
         return Done{};
     }
 
+    /// Cells, those next to them, and about so many more around that have surface: few times are to suffice.
+    std::vector<Vec3i> withMargin(const std::vector<Vec3i>& cells, size_t margin) const {
+        CellSet all;
+        for (const Vec3i cell : cells) all.insert(cell);
+        const size_t asked = all.size();
+        for (size_t next = 0; next < all.size() && (next < asked || all.size() < asked + margin); ++next)
+            visitSides(Vec3i(all.list()[next]), [&](const CellSide& side) {
+                const Vec3i beyond = side.beyond();
+                if (!isInGrid(grid_, beyond) || mesher_.has(beyond)) return;
+                if (next < asked || !coarseCells_.isEmpty(beyond)) all.insert(beyond);
+            });
+        return all.list();
+    }
+
     /// Those that some surface reaches.
     CellSet reachedOf(const CellSet& cells) const {
         CellSet reached;
@@ -276,7 +291,7 @@ private:
                 }
                 visitSides(cell, [&](const CellSide& side) {
                     const Vec3i beyond = side.beyond();
-                    if (cells.contains(beyond) || !isInGrid(beyond)) return;
+                    if (cells.contains(beyond) || !isInGrid(grid_, beyond)) return;
                     if (fitSeam(side, grid_, coarseCells_, fineCells_)) return;
                     if (cells.size() >= mostCells)
                         tooMany.insert(beyond);
@@ -285,12 +300,10 @@ private:
                 });
             }
             if (unmeshed.empty()) return tooMany;
-            if (Status s = meshFinely(unmeshed); !s) return s.error();
+            if (Status s = meshFinely(withMargin(unmeshed, cells.size() / marginShare)); !s) return s.error();
             open.swap(unmeshed);
         }
     }
-
-    bool isInGrid(Vec3i cell) const { return minComponent(cell) >= 0 && minComponent(grid_.cells - cell) > 0; }
 
     /// Fits the surfaces on all sides of the cells. Returns the cells beyond those that say other than others.
     CellSet join(const CellSet& cells, Fits& fits) const {
@@ -304,7 +317,7 @@ private:
         };
         for (const Vec3i cell : cells.list())
             visitSides(cell, [&](const CellSide& side) {
-                if (cells.contains(side.beyond()) || !isInGrid(side.beyond())) return;
+                if (cells.contains(side.beyond()) || !isInGrid(grid_, side.beyond())) return;
                 auto fit = fitSeam(side, grid_, coarseCells_, fineCells_);
                 if (!fit || !std::all_of(fit->vertices.begin(), fit->vertices.end(), joinVertex)) {
                     misfits.insert(side.beyond());

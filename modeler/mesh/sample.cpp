@@ -86,7 +86,7 @@ void BlockSamples::enter(const Block& block, const Grid& grid, eval::Workspace& 
     active_ = 0;
     uint64_t regions = 0;
     const uint64_t border = onBorder(bricks);
-    for (uint64_t rest = bricks; rest != 0; rest &= rest - 1) {
+    for (uint64_t rest = bricks & (block.part ? block.part->bricks : ~uint64_t{0}); rest != 0; rest &= rest - 1) {
         const int brick = std::countr_zero(rest), region = regions_.of[brick];
         if (!mayHoldSurface(regions_.ranges[region], border >> brick & 1)) continue;
         regions |= 1ull << region;

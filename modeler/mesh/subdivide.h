@@ -5,8 +5,10 @@
 // still closes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -40,9 +42,17 @@ Grid gridFor(const Box3f& bounds, float cell_m);
 /// The cell size that puts `resolution` (at least 1) cells along the longest side of `bounds`; 1 m for an empty box.
 float cellFor(const Box3f& bounds, int resolution);
 
+/// Some of a block's cells. Blocks at a side have to have the same cells and bricks at it.
+struct PartOfBlock {
+    int cubeCells = brickCells;        ///< cells come in cubes with so many along an edge, a divisor of brickCells
+    uint64_t bricks = 0;               ///< those with such cubes, and the seven below each, by number
+    std::array<uint64_t, 64> cubes{};  ///< by brick: its cubes that get triangles, x first
+};
+
 struct Block {
     Vec3i index;      ///< block coordinates: cells [32·index, 32·index + 32)
     eval::Tape tape;  ///< shortened to the block, as far as the surface goes: far from it only the sign is the field's
+    std::shared_ptr<const PartOfBlock> part{};  ///< null: all of it
 };
 
 /// What the descent and the sampling counted, for the report; vertex refinement apart, normals not counted.

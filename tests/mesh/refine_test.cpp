@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "modeler/field/solids.h"
@@ -145,6 +147,55 @@ TEST(Refine, IsCancelled) {
     ASSERT_FALSE(cells.ok());
     EXPECT_EQ(cells.error().kind, Error::Kind::Cancelled);
     EXPECT_EQ(bytesOf(*coarse.mesh), before);
+}
+
+/// The triangles of a surface by the places of their corners, in an order that hangs on nothing else.
+std::vector<std::array<float, 9>> trianglesByPlace(const Chunk& surface) {
+    std::vector<std::array<float, 9>> all;
+    for (const Triangle& t : surface.triangles) {
+        const std::array<Vec3f, 3> p{surface.positions[t.x], surface.positions[t.y], surface.positions[t.z]};
+        all.push_back({p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z, p[2].x, p[2].y, p[2].z});
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+/// Cells come in several steps, each of which meshes bricks that share vertices with those before.
+TEST(FineCells, AreTheSameSurfaceHoweverManyAreAddedAtATime) {
+    for (const int halvings : {1, 2, 3})
+        for (const double degrees : {0.0, 12.0}) {
+            const Scene scene = finned(degrees);
+            const eval::Tape tape = scene.tape();
+            const Grid grid = gridFor(scene.field.bounds, cellFor(scene.field.bounds, 20));
+            const std::vector<Vec3i> cells = cellsIn(grid, {{-2, -2, -2}, {2, 2, 2}}).list();
+            FineCells whole(tape, grid, halvings, 2, nullptr), inSteps(tape, grid, halvings, 2, nullptr);
+            ASSERT_TRUE(whole.add(cells));
+            for (size_t step = 0; step < 7; ++step) {
+                std::vector<Vec3i> some;
+                for (size_t i = step; i < cells.size(); i += 7) some.push_back(cells[i]);
+                ASSERT_TRUE(inSteps.add(some));
+            }
+            EXPECT_EQ(trianglesByPlace(inSteps.surface()), trianglesByPlace(whole.surface()));
+            Mesh mesh;
+            mesh.chunks.push_back(inSteps.surface());
+            const auto word = validate(mesh);
+            EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects)
+                << halvings << ' ' << degrees;
+        }
+}
+
+TEST(FineCells, MeshNoMoreThanTheCellsAndThoseAcrossBlocks) {
+    const Scene scene = ballScene();
+    const eval::Tape tape = scene.tape();
+    const Grid grid = gridFor(scene.field.bounds, cellFor(scene.field.bounds, 24));
+    FineCells fine(tape, grid, 1, 2, nullptr);
+    const std::vector<Vec3i> cells = cellsIn(grid, {{-2, -2, -2}, {2, 2, 2}}).list();
+    for (const Vec3i cell : cells) {
+        if (cell.x % 16 == 0 || cell.x % 16 == 15 || cell.y % 16 != 8) continue;
+        ASSERT_TRUE(fine.add({&cell, 1}));
+    }
+    ASSERT_FALSE(fine.surface().triangles.empty());
+    for (const Triangle& t : fine.surface().triangles) EXPECT_EQ(cellOf(grid, fine.surface().positions, t).y % 16, 8);
 }
 
 TEST(FineCells, HaveTheCornersOfTheGridBitByBit) {
