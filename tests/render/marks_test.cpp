@@ -112,5 +112,28 @@ TEST_F(MarksPicture, CreasesAndWiresAreDarkLines) {
     EXPECT_NE(plain.rgb, wires.rgb);
 }
 
+/// Bars behind a wall, whose sides are seen from their edge: no line of theirs shows through it.
+TEST_F(MarksPicture, WiresBehindAWallAreHidden) {
+    std::vector<mesh::Chunk> boxes{hardBox({0, 0, 0}, {}, {5, 5, .5}, 0)};
+    for (int i = -4; i <= 4; ++i) boxes.push_back(hardBox({1.0 * i, 0, -9}, {}, {.2, 4, 6}, 0));
+    auto painter = MeshPainter::create(meshOfChunks(std::move(boxes)), {}, nullptr);
+    ASSERT_TRUE(painter.ok());
+    PictureOptions options;
+    options.width = options.height = 400;
+    options.camera = {{.5, .3, 30}, {0, 0, 0}};
+    options.samples = 1;
+    const auto plain = painter->draw(options, nullptr, {MeshLook::Materials, false, {}});
+    const auto wires = painter->draw(options, nullptr, {MeshLook::Materials, true, {}});
+    ASSERT_TRUE(plain.ok() && wires.ok());
+    size_t lines = 0;
+    for (size_t y = 120; y < 280; ++y)
+        for (size_t x = 120; x < 280; ++x) {
+            const size_t at = (y * 400 + x) * 3;
+            lines += std::abs(plain->rgb[at] - wires->rgb[at]) > 8;
+        }
+    EXPECT_GT(lines, 100u) << "the diagonal of the wall";
+    EXPECT_LT(lines, 200u);
+}
+
 }  // namespace
 }  // namespace sgm::render

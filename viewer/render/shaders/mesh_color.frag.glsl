@@ -64,6 +64,8 @@ vec3 materialLight(int triangle, vec3 normal, vec3 toEye) {
 void main() {
     if (isCutAway(worldPosition)) discard;
     if (wire != 0) {
+        // The offset of lines grows with the slope: those of triangles seen from their edge would show through others.
+        if (abs(dot(normalize(worldNormal), normalize(eye - worldPosition))) < 0.08) discard;
         color = vec4(0.01, 0.015, 0.02, 0.45);
         return;
     }
