@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "grammar/derive/boxes.h"
-#include "grammar/derive/lift.h"
 
 namespace sgm::lower {
 namespace {
@@ -19,17 +18,15 @@ int halvingsFor(const ThinPart& part, float cell_m) {
     return halvings;
 }
 
-double countCellsAround(const ThinPart& part, const derive::Derivation& derivation, const Model& model,
-                        const mesh::Grid& grid) {
-    const Vec3d size = derive::boxOf(derive::liftedScope(derivation, model.shapeOf[part.part])).size();
+double countCellsAround(const ThinPart& part, const mesh::Grid& grid) {
+    const Vec3d size = derive::boxOf(part.scope).size();
     double count = 1;
     for (int axis = 0; axis < 3; ++axis) count *= size[axis] / static_cast<double>(grid.cell_m) + 2 * around + 1;
     return count;
 }
 
-void addCellsAround(const ThinPart& part, const derive::Derivation& derivation, const Model& model,
-                    const mesh::Grid& grid, mesh::CellSet& cells) {
-    const derive::Scope scope = derive::liftedScope(derivation, model.shapeOf[part.part]);
+void addCellsAround(const ThinPart& part, const mesh::Grid& grid, mesh::CellSet& cells) {
+    const derive::Scope& scope = part.scope;
     const double cell = static_cast<double>(grid.cell_m), reach_m = around * cell;
     const Box3d box = derive::boxOf(scope).inflated(reach_m);
     const Vec3d origin = grid.origin.as<double>(), half = scope.half();

@@ -11,12 +11,10 @@ namespace sgm::lower {
 int halvingsFor(const ThinPart& part, float cell_m);
 
 /// About as many cells as addCellsAround looks at.
-double countCellsAround(const ThinPart& part, const derive::Derivation& derivation, const Model& model,
-                        const mesh::Grid& grid);
+double countCellsAround(const ThinPart& part, const mesh::Grid& grid);
 
-/// Adds the cells of `grid` whose middles lie within one and a half cells of a part's scope. O(cells of the box around
+/// Adds the cells of `grid` whose middles lie within one and a half cells of where a part is. O(cells of the box around
 /// it).
-void addCellsAround(const ThinPart& part, const derive::Derivation& derivation, const Model& model,
-                    const mesh::Grid& grid, mesh::CellSet& cells);
+void addCellsAround(const ThinPart& part, const mesh::Grid& grid, mesh::CellSet& cells);
 
 }  // namespace sgm::lower

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
+#include <optional>
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
+#include "grammar/lower/local_tapes.h"
 #include "grammar/lower/presence.h"
 #include "grammar/lower/scope_lines.h"
+#include "grammar/lower/thin_sections.h"
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
 
@@ -17,28 +19,17 @@ namespace {
 
 constexpr int fewestSteps = 16, mostSteps = 128;  ///< between the samples on a line
 constexpr int halvings = 6;                       ///< of a step around a crossing
-constexpr int fewestCrossings = 3;                ///< of a part that isn't buried
+constexpr size_t fewestCrossings = 3;             ///< of a part that isn't buried
 constexpr double leastMissing = 0.1;              ///< share of the surface that a part in the list lacks
 constexpr double mostlyFree = 0.9;                ///< of the lines through a plate meet both its faces
 constexpr double leastMissingArea = 0.2;          ///< share of a plate's area, which is known less well
 constexpr double leaningWall = 1.42;              ///< cells that hold a wall of any plan or a shell are thinner by this
-constexpr size_t partsPerGroup = 64;              ///< of a parallel loop
-constexpr size_t partsPerTape = 8;                ///< that are shortened from one tape
 constexpr double probed = 1.1 * lineReach;        ///< of a scope: where its part is looked for
-
-/// Points as the evaluation takes them.
-struct Rows {
-    std::vector<float> x, y, z;
-    void clear() { x.clear(), y.clear(), z.clear(); }
-    void add(Vec3f p) { x.push_back(p.x), y.push_back(p.y), z.push_back(p.z); }
-    Vec3f operator[](size_t i) const { return {x[i], y[i], z[i]}; }
-    eval::Points points() const { return {x.data(), y.data(), z.data(), x.size()}; }
-};
 
 /// A thin part, and the share of its surface that the mesh lacks; 0 where it is buried.
 struct Candidate {
     OriginId part = 0;
-    const derive::Scope* scope = nullptr;
+    derive::Scope scope;
     double wall_m = 0;  ///< thickness of its walls or shell, where these are what is thin; else 0
     double missing = 0;
     bool isWhole = false;  ///< told by the mesh alone
@@ -80,83 +71,38 @@ void measureFacing(const mesh::Mesh& mesh, std::span<Candidate> parts, size_t pa
             const Vec3d twice = cross(*positions[corners[1]] - p, *positions[corners[2]] - p).as<double>();
             Vec3d across{};
             across[plate->plateAxis] = 1;
-            plate->facing_m2 += 0.5 * std::abs(dot(twice, plate->scope->axes * across));
+            plate->facing_m2 += 0.5 * std::abs(dot(twice, plate->scope.axes * across));
         }
-}
-
-/// Orders parts so that halves of the list, and halves of these, lie beside each other. O(n log² n).
-void orderByPlace(std::span<Candidate> parts) {
-    if (parts.size() <= partsPerTape) return;
-    Box3d box;
-    for (const Candidate& c : parts) box = hull(box, c.scope->centre);
-    const Vec3d size = box.size();
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto middle = parts.begin() + static_cast<ptrdiff_t>(parts.size() / 2);
-    std::nth_element(parts.begin(), middle, parts.end(), [&](const Candidate& a, const Candidate& b) {
-        return std::pair(a.scope->centre[axis], a.part) < std::pair(b.scope->centre[axis], b.part);
-    });
-    orderByPlace(parts.first(parts.size() / 2));
-    orderByPlace(parts.subspan(parts.size() / 2));
 }
 
 /// One worker's.
 class Prober {
 public:
     Prober(const eval::Tape& tape, const Presence& presence, float cell_m)
-        : tape_(tape), presence_(presence), cell_m_(static_cast<double>(cell_m)) {}
+        : tapes_(tape), presence_(presence), cell_m_(static_cast<double>(cell_m)) {}
 
-    /// Looks for at most partsPerGroup parts that lie beside each other. The tape is shortened to all, to some of them
-    /// and to each: ranges of boxes side by side cost little more than one.
+    /// Looks for at most LocalTapes::most parts that lie beside each other.
     void probe(std::span<Candidate> parts) {
-        const Box3f all = boxAround(parts);
-        shortenTo(tape_, {&all, 1}, {&group_, 1});
-        if (group_.isEmpty) return;
-        std::array<Box3f, partsPerGroup / partsPerTape> boxes;
-        const size_t count = (parts.size() + partsPerTape - 1) / partsPerTape;
-        const auto some = [&](size_t k) {
-            return parts.subspan(k * partsPerTape, std::min(partsPerTape, parts.size() - k * partsPerTape));
-        };
-        for (size_t k = 0; k < count; ++k) boxes[k] = boxAround(some(k));
-        shortenTo(group_.tape, {boxes.data(), count}, some_);
-        for (size_t k = 0; k < count; ++k)
-            if (!some_[k].isEmpty) probeEach(some(k), some_[k].tape);
+        std::vector<Box3f> boxes;
+        for (const Candidate& c : parts) boxes.push_back(boxOf(c.scope, probed).as<float>());
+        tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) { parts[i].missing = missing(parts[i], tape); });
     }
 
 private:
-    /// A tape for a box.
-    struct Local {
-        eval::Tape tape;
-        bool isEmpty = true;  ///< no surface may be there
-    };
-
-    static Box3f boxAround(std::span<const Candidate> parts) {
-        Box3f box;
-        for (const Candidate& c : parts) box = hull(box, boxOf(*c.scope, probed).as<float>());
-        return box;
-    }
-
-    void probeEach(std::span<Candidate> parts, const eval::Tape& tape) {
-        std::array<Box3f, partsPerTape> boxes;
-        for (size_t i = 0; i < parts.size(); ++i) boxes[i] = boxOf(*parts[i].scope, probed).as<float>();
-        shortenTo(tape, {boxes.data(), parts.size()}, each_);
-        for (size_t i = 0; i < parts.size(); ++i)
-            if (!each_[i].isEmpty) parts[i].missing = missing(parts[i], each_[i].tape);
-    }
-
     double missing(const Candidate& candidate, const eval::Tape& tape) {
         const OriginId part = candidate.part;
         findCrossings(candidate, tape);
         if (inside_.empty()) return 0;
         // Where another part's surface is the same, a mesh may have it as that part's.
-        owners_.resize(middles_.x.size()), tied_.resize(owners_.size()), labels_.resize(owners_.size());
-        eval::evaluateOrigin(tape, middles_.points(), owners_.data(), workspace_);
-        eval::evaluateLabels(tape, middles_.points(), labels_.data(), tied_.data(), workspace_);
+        owners_.resize(middles_.size()), tied_.resize(owners_.size()), labels_.resize(owners_.size());
+        eval::evaluateOrigin(tape, middles_.points(), owners_.data(), tapes_.workspace());
+        eval::evaluateLabels(tape, middles_.points(), labels_.data(), tied_.data(), tapes_.workspace());
         int met = 0, lacks = 0;
         for (size_t i = 0; i < owners_.size(); ++i) {
             if (owners_[i] != part || tied_[i] != part) continue;
             ++met, lacks += !presence_.isNear(middles_[i], part);
         }
-        if (met < fewestCrossings) return 0;
+        if (met < static_cast<int>(fewestCrossings)) return 0;
         return std::max(static_cast<double>(lacks) / met, missingOfPlate(candidate, met));
     }
 
@@ -165,26 +111,15 @@ private:
     double missingOfPlate(const Candidate& candidate, int met) const {
         if (candidate.plateAxis < 0) return 0;
         int lines = 0;
-        eachLine(*candidate.scope, cell_m_, [&](Vec3d, int) { return ++lines, true; });
+        eachLine(candidate.scope, cell_m_, [&](Vec3d, int) { return ++lines, true; });
         const double free = met / (2.0 * lines);
-        const double lacks = 1 - candidate.facing_m2 / (free * facesOf(*candidate.scope, candidate.plateAxis));
+        const double lacks = 1 - candidate.facing_m2 / (free * facesOf(candidate.scope, candidate.plateAxis));
         return free < mostlyFree || lacks < leastMissingArea ? 0 : lacks;
-    }
-
-    /// Leaves in `to` what matters in each box.
-    void shortenTo(const eval::Tape& from, std::span<const Box3f> boxes, std::span<Local> to) {
-        std::array<eval::FloatInterval, partsPerGroup> ranges;
-        const eval::RangeTrace trace =
-            eval::evaluateRanges(from, {boxes.data(), boxes.size()}, ranges.data(), workspace_);
-        for (size_t i = 0; i < boxes.size(); ++i) {
-            to[i].isEmpty = ranges[i].lo > 0 || ranges[i].hi < 0;
-            if (!to[i].isEmpty) eval::shorten(from, trace, i, workspace_, to[i].tape);
-        }
     }
 
     /// Where lines through the scope along its thin axes cross the field's surface.
     void findCrossings(const Candidate& candidate, const eval::Tape& tape) {
-        const derive::Scope& scope = *candidate.scope;
+        const derive::Scope& scope = candidate.scope;
         const double wall_m = candidate.wall_m;
         const int steps = wall_m > 0 ? static_cast<int>(std::clamp(std::ceil(2 * scope.size.y / wall_m),
                                                                    double{fewestSteps}, double{mostSteps}))
@@ -214,19 +149,15 @@ private:
             for (size_t i = 0; i < inside_.size(); ++i) (values_[i] < 0 ? inside_ : outside_)[i] = middles_[i];
         }
     }
-    void evaluate(const Rows& rows, const eval::Tape& tape) {
-        values_.resize(rows.x.size());
-        eval::evaluate(tape, rows.points(), values_.data(), workspace_);
+    void evaluate(const PointList& rows, const eval::Tape& tape) {
+        values_.resize(rows.size());
+        eval::evaluate(tape, rows.points(), values_.data(), tapes_.workspace());
     }
 
-    const eval::Tape& tape_;
+    LocalTapes tapes_;
     const Presence& presence_;
     const double cell_m_;
-    Local group_;
-    std::array<Local, partsPerGroup / partsPerTape> some_;
-    std::array<Local, partsPerTape> each_;
-    eval::Workspace workspace_;
-    Rows rows_, middles_;
+    PointList rows_, middles_;
     std::vector<float> values_;
     std::vector<OriginId> owners_, tied_;  ///< at the middles; where several tie, the first of them in `tied_`
     std::vector<uint32_t> labels_;
@@ -256,63 +187,108 @@ double wallOf(const derive::SolidValue& solid) {
     return least;
 }
 
+/// Parts and faces that are looked at among others.
+struct Among {
+    std::optional<std::vector<bool>> parts;  ///< by part; all where there is none
+    std::optional<std::vector<PartFace>> faces;
+
+    Among(const std::vector<ThinPart>* some, size_t count) {
+        if (!some) return;
+        parts.emplace(count);
+        faces.emplace();
+        for (const ThinPart& t : *some)
+            if (t.face < 0)
+                (*parts)[t.part] = true;
+            else
+                faces->push_back({t.part, t.face});
+    }
+};
+
+/// The parts that may lack something, where they stand on hills.
+std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Model& model, double cell,
+                                 const std::optional<std::vector<bool>>& among) {
+    std::vector<Candidate> thin;
+    for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
+        if (model.shapeOf[part] == derive::none || (among && !(*among)[part])) continue;
+        const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
+        if (shape.solid == derive::none) continue;
+        const bool isFlat = cellThatHolds(shape.scope) < cell;
+        const double wall_m = isFlat ? 0 : wallOf(derivation.tree.solids[shape.solid]);
+        if (!isFlat && !(wall_m / leaningWall < cell)) continue;
+        thin.push_back({.part = part, .scope = derive::liftedScope(derivation, model.shapeOf[part]), .wall_m = wall_m});
+        if (isFlat) thin.back().plateAxis = plateAxis(thin.back().scope, cell);
+    }
+    return thin;
+}
+
+/// Asks of each part whether it is there; those that are whole, as far as the mesh tells, go.
+void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Presence& presence, float cell_m,
+                int threads, Progress* progress) {
+    parallelFor(thin.size(), threads, nullptr, [&](size_t i, int) {
+        const derive::Scope& scope = thin[i].scope;
+        const int axis = thin[i].plateAxis;
+        const bool covers = axis < 0 || thin[i].facing_m2 >= (1 - leastMissingArea) * facesOf(scope, axis);
+        thin[i].isWhole =
+            thin[i].wall_m == 0 && covers && presence.isWhole(scope, thin[i].part, static_cast<double>(cell_m));
+    });
+    std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
+    orderByPlace(
+        std::span(thin), [](const Candidate& c) { return c.scope.centre; }, [](const Candidate& c) { return c.part; });
+    std::vector<Prober> probers;
+    probers.reserve(static_cast<size_t>(threadCount(threads)));
+    for (int w = 0; w < threadCount(threads); ++w) probers.emplace_back(tape, presence, cell_m);
+    if (progress) progress->begin("thin parts", thin.size());
+    const size_t groups = (thin.size() + LocalTapes::most - 1) / LocalTapes::most;
+    parallelFor(groups, threads, progress, [&](size_t group, int worker) {
+        const size_t first = group * LocalTapes::most, count = std::min(LocalTapes::most, thin.size() - first);
+        probers[static_cast<size_t>(worker)].probe(std::span(thin).subspan(first, count));
+        for (size_t i = 0; i < count; ++i) tick(progress);
+    });
+}
+
+/// The share of a section's lines on which the mesh has neither surface; 0 where it is buried.
+double missingOf(const ThinSection& section, const Presence& presence) {
+    const auto isNear = [&](const ThinSection::Crossing& c) { return presence.isNear(c.at, c.owner); };
+    const auto lacks = std::count_if(section.lines.begin(), section.lines.end(),
+                                     [&](const auto& line) { return !isNear(line[0]) && !isNear(line[1]); });
+    const size_t lines = section.lines.size();
+    return lines < fewestCrossings ? 0 : static_cast<double>(lacks) / static_cast<double>(lines);
+}
+
 }  // namespace
 
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress, const std::vector<ThinPart>* among) {
+    if (mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     const auto cell = static_cast<double>(cell_m);
-    std::vector<Candidate> thin;
-    std::deque<derive::Scope> scopes;  // where they stand on hills; a deque, for references stay
+    const Among some(among, model.shapeOf.size());
+    std::vector<Candidate> thin = thinParts(derivation, model, cell, some.parts);
+    const auto sections =
+        findThinSections(derivation, model, tape, cell_m, threads, progress, some.faces ? &*some.faces : nullptr);
+    if (!sections.ok()) return sections.error();
     std::vector<bool> isThin(model.shapeOf.size());
-    const auto look = [&](OriginId part) {
-        if (model.shapeOf[part] == derive::none) return;
-        const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
-        if (shape.solid == derive::none) return;
-        const bool isFlat = cellThatHolds(shape.scope) < cell;
-        const double wall_m = isFlat ? 0 : wallOf(derivation.tree.solids[shape.solid]);
-        if (!isFlat && !(wall_m / leaningWall < cell)) return;
-        scopes.push_back(derive::liftedScope(derivation, model.shapeOf[part]));
-        thin.push_back({part, &scopes.back(), wall_m});
-        if (isFlat) thin.back().plateAxis = plateAxis(scopes.back(), cell);
-        isThin[part] = true;
-    };
-    if (among)
-        for (const ThinPart& part : *among) look(part.part);
-    else
-        for (OriginId part = 1; part < model.shapeOf.size(); ++part) look(part);
-    if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
+    for (const Candidate& c : thin) isThin[c.part] = true;
+    for (const ThinSection& section : *sections)
+        for (const auto& line : section.lines) isThin[line[0].owner] = isThin[line[1].owner] = true;
     const Presence presence(mesh, isThin, cell_m);
     measureFacing(mesh, thin, model.shapeOf.size());
-    parallelFor(thin.size(), threads, nullptr, [&](size_t i, int) {
-        const derive::Scope& scope = *thin[i].scope;
-        const int axis = thin[i].plateAxis;
-        const bool covers = axis < 0 || thin[i].facing_m2 >= (1 - leastMissingArea) * facesOf(scope, axis);
-        thin[i].isWhole = thin[i].wall_m == 0 && covers && presence.isWhole(scope, thin[i].part, cell);
-    });
-    std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
-    orderByPlace(thin);
-    std::vector<Prober> probers;
-    probers.reserve(static_cast<size_t>(threadCount(threads)));
-    for (int w = 0; w < threadCount(threads); ++w) probers.emplace_back(tape, presence, cell_m);
-    if (progress) progress->begin("thin parts", thin.size());
-    const size_t groups = (thin.size() + partsPerGroup - 1) / partsPerGroup;
-    parallelFor(groups, threads, progress, [&](size_t group, int worker) {
-        const std::span<Candidate> all(thin);
-        const auto of =
-            all.subspan(group * partsPerGroup, std::min(partsPerGroup, thin.size() - group * partsPerGroup));
-        probers[static_cast<size_t>(worker)].probe(of);
-        for (size_t i = 0; i < of.size(); ++i) tick(progress);
-    });
+    probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();
-    std::sort(thin.begin(), thin.end(), [](const Candidate& a, const Candidate& b) { return a.part < b.part; });
     std::vector<ThinPart> found;
     for (const Candidate& c : thin) {
         if (!(c.missing > leastMissing)) continue;
         const bool wall = c.wall_m > 0;
-        found.push_back({c.part, wall ? c.wall_m : minComponent(c.scope->size),
-                         wall ? c.wall_m / leaningWall : cellThatHolds(*c.scope), c.missing});
+        const double holding_m = wall ? c.wall_m / leaningWall : cellThatHolds(c.scope);
+        found.push_back({c.part, -1, wall ? c.wall_m : minComponent(c.scope.size), holding_m, c.missing, c.scope});
     }
+    for (const ThinSection& s : *sections)
+        if (const double missing = missingOf(s, presence); missing > leastMissing)
+            found.push_back(
+                {s.part, s.face, s.thickness_m, std::min(cellThatHolds(s.scope), cell / 2), missing, s.scope});
+    std::sort(found.begin(), found.end(), [](const ThinPart& a, const ThinPart& b) {
+        return std::pair(a.part, a.face) < std::pair(b.part, b.face);
+    });
     return found;
 }
 

@@ -10,21 +10,25 @@
 
 namespace sgm::lower {
 
-/// A part that is thinner than a cell and has surface where the mesh shows none of it.
+/// A part that is too thin for the cells, or a wall of solid or air beside one of its faces: the mesh shows none of it
+/// in places.
 struct ThinPart {
     OriginId part = 0;
-    double thickness_m = 0;  ///< the least extent of its shape's scope, or of its walls or shell
+    int face = -1;  ///< of the part's scope, beside which the wall is: 2 · axis + (high side); −1: the part itself
+    double thickness_m = 0;  ///< the least extent of its shape's scope, or of its walls or shell; of the wall
     double cell_m = 0;       ///< cells no larger than this hold it
     double missing = 0;      ///< share of its surface without a triangle within half a cell, or of a plate's area
+    derive::Scope scope;     ///< where it is
 };
 
 /// Looks at the parts whose scope is somewhere thinner than a cell, or whose walls or shell are (parapets, roofs that
 /// are open below): on lines through the scope along its thin axes, upright ones for walls, where does the field's
 /// surface belong to the part, and has the mesh a triangle of the part there? Of a plate that stands free, does the
-/// mesh cover its faces? Those that lack more than a tenth, ascending by part. What else is thin within a thicker
-/// scope, as a needle's point or a fractal's ornament, isn't looked for. Empty for a mesh without origins. Only parts
-/// `among` others are looked at, where that isn't null. About 4,000 evaluations of a shortened tape a thin part, 33,000
-/// at most for walls, O(n log n); `threads` 0: all. Error::Cancelled.
+/// mesh cover its faces? Likewise at thin walls that cuts leave (`findThinSections`). Those that lack more than a
+/// tenth, ascending by part. What else is thin within a thicker scope, as a needle's point or a fractal's ornament,
+/// isn't looked for. Empty for a mesh without origins. Only those `among` others are looked at, where that isn't null.
+/// About 4,000 evaluations of a shortened tape a thin part, 33,000 at most for walls, O(n log n); `threads` 0: all.
+/// Error::Cancelled.
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress,

@@ -135,7 +135,9 @@ private:
 class ThinLinks {
 public:
     ThinLinks(const Model& model, const std::vector<lower::ThinPart>& missing)
-        : model_(model), shapes_(model.derivation.tree.shapes), missing_(missing), isMissing_(shapes_.size(), false) {
+        : model_(model), shapes_(model.derivation.tree.shapes), isMissing_(shapes_.size(), false) {
+        for (const lower::ThinPart& part : missing)
+            if (part.face < 0) missing_.push_back(part);
         for (size_t i = 0; i < missing_.size(); ++i)
             if (shapeOf(i) != derive::none) isMissing_[shapeOf(i)] = true;
     }
@@ -185,8 +187,8 @@ private:
 
     const Model& model_;
     const derive::Shapes& shapes_;
-    const std::vector<lower::ThinPart>& missing_;
-    std::vector<bool> isMissing_;  ///< by shape
+    std::vector<lower::ThinPart> missing_;  ///< whole parts
+    std::vector<bool> isMissing_;           ///< by shape
 };
 
 /// The field around a place, an eighth of a cell apart, and which of its nodes hang together.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "grammar/pipeline/buried.h"
 #include "grammar/pipeline/gaps.h"
@@ -12,7 +13,7 @@
 namespace sgm::pipeline {
 namespace {
 
-/// The parts of one line of a grammar.
+/// The parts of one line of a grammar, or the walls beside them.
 struct Line {
     std::string symbol;
     size_t parts = 0;
@@ -39,10 +40,10 @@ Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const 
 std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
                                          const std::vector<lower::ThinPart>& missing, const std::string& object) {
     constexpr size_t most = 5;
-    std::map<std::pair<std::string, uint32_t>, Line> lines;
+    std::map<std::tuple<std::string, uint32_t, bool>, Line> lines;
     for (const lower::ThinPart& m : missing) {
         const Part& part = model.lowered->provenance.parts[m.part];
-        Line& line = lines[{part.file(), part.line()}];
+        Line& line = lines[{part.file(), part.line(), m.face >= 0}];
         if (line.parts++ == 0) {
             const derive::ShapeId shape = model.lowered->shapeOf[m.part];
             line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, {}};
@@ -60,14 +61,18 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
     std::vector<MeshWarning> warnings;
     for (const auto& [place, line] : lines) {
         if (warnings.size() == most) break;
+        const auto& [file, number, isBeside] = place;
         const bool one = line.parts == 1;
+        const std::string count = one ? "a" : std::to_string(line.parts);
+        const std::string what = isBeside ? fmt::format("{} wall{} of {:.3g} m beside '{}'", count, one ? "" : "s",
+                                                        line.thickness_m, line.symbol)
+                                          : fmt::format("{} '{}' of {:.3g} m", count, line.symbol, line.thickness_m);
         warnings.push_back(
-            {line.span, fmt::format("{}:{}: ", place.first, place.second),
-             fmt::format("{} '{}' of {:.3g} m {} thinner than {} of {:.3g} m and lack{} {:.0f} % of the surface: {} "
-                         "holds {}",
-                         one ? "a" : std::to_string(line.parts), line.symbol, line.thickness_m, one ? "is" : "are",
-                         whose, grid.cell_m, one ? "s" : "", 100 * line.missing / static_cast<double>(line.parts),
-                         remedy(line.cell_m), one ? "it" : "them"),
+            {line.span, fmt::format("{}:{}: ", file, number),
+             fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}", what,
+                         one ? "is" : "are", whose, grid.cell_m, one ? "s" : "",
+                         100 * line.missing / static_cast<double>(line.parts), remedy(line.cell_m),
+                         one ? "it" : "them"),
              true});
     }
     if (lines.size() > most)

@@ -60,13 +60,13 @@ private:
         HalvedCells cells;
         double cellCount = 0;
         for (const lower::ThinPart& part : missing) {
-            int& tried = tried_[part.part];
+            int& tried = tried_[{part.part, part.face}];
             tried = std::max(tried + 1, lower::halvingsFor(part, grid_.cell_m));
             if (tried > most_) continue;
-            cellCount += lower::countCellsAround(part, model_.derivation, *model_.lowered, grid_);
+            cellCount += lower::countCellsAround(part, grid_);
             if (cellCount > cellsPerTriangle * static_cast<double>(mostTriangles_)) continue;
             mesh::CellSet around;
-            lower::addCellsAround(part, model_.derivation, *model_.lowered, grid_, around);
+            lower::addCellsAround(part, grid_, around);
             tried = std::max(tried, halvingsIn(around));
             for (const Vec3i cell : around.list()) cells[static_cast<size_t>(tried)].insert(cell);
         }
@@ -101,7 +101,7 @@ private:
     const int most_;
     Context& context_;
     const size_t mostTriangles_;
-    std::map<OriginId, int> tried_;  ///< halvings of the cells around a part
+    std::map<std::pair<OriginId, int>, int> tried_;  ///< halvings of the cells around a part, or beside a face
     HalvedCells halved_;
     double findingSeconds_ = 0, halvingSeconds_ = 0;
 };

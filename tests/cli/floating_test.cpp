@@ -120,7 +120,7 @@ TEST_F(Cli, EveryCommandTellsGapsAndThinParts) {
                                   ":2)"),
                   std::string::npos)
             << command << floats.out;
-        EXPECT_NE(lost.out.find("a 'cube' of 0.015 m is thinner than the mesh's cells of"), std::string::npos)
+        EXPECT_NE(lost.out.find("a 'cube' of 0.015 m is too thin for the mesh's cells of"), std::string::npos)
             << command << lost.out;
         EXPECT_NE(lost.out.find(thin + ":3:"), std::string::npos) << command << lost.out;
     }

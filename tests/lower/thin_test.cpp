@@ -1,7 +1,9 @@
 // Parts thinner than a cell: which of them a mesh shows (tests/mesh/scenes), and what the list of lost ones is worth.
+#include <array>
 #include <cmath>
 
 #include "grammar/lower/thin_parts.h"
+#include "grammar/lower/thin_sections.h"
 #include "grammar/rules/params.h"
 #include "tests/lower/lost_parts.h"
 
@@ -53,6 +55,33 @@ TEST(LostParts, OfATurnedWallAreTold) {
         EXPECT_GT(missing[0].missing, .25) << degrees;
         EXPECT_TRUE(missingAt(model, static_cast<float>(missing[0].cell_m)).empty()) << degrees;
     }
+}
+
+/// Two lights in a frame leave a bar of 10 cm; nothing else is thinner than a cell and a half.
+TEST(ThinSections, AreTheWallsThatCutsLeave) {
+    const Lowered model(
+        "grammar 2\nstart A -> cube size (4, 3, .5) - cube size (1, 2, 1) move (-.55, 0, 0) - cube size (1, 2, 1) move "
+        "(.55, 0, 0)\n");
+    const auto found = lower::findThinSections(model.derivation, *model.model, model.tape(), .2f, 2, nullptr);
+    ASSERT_TRUE(found.ok());
+    ASSERT_EQ(found->size(), 2u);
+    const std::array<int, 2> faces{1, 0};  // the high side of the left one, the low side of the right one
+    for (size_t i = 0; i < 2; ++i) {
+        const lower::ThinSection& section = (*found)[i];
+        EXPECT_EQ(section.face, faces[i]);
+        EXPECT_NEAR(section.thickness_m, .1, 1e-3);
+        EXPECT_NEAR(section.scope.centre.x, 0, 1e-3);
+        EXPECT_NEAR(section.scope.size.x, .1, 1e-3);
+        EXPECT_EQ(section.scope.size.y, 2);
+        EXPECT_GT(section.lines.size(), 10u);
+        for (const auto& line : section.lines) EXPECT_NEAR(std::abs(line[0].at.x), .05, 1e-3);
+    }
+    const std::vector<lower::PartFace> none;
+    EXPECT_TRUE(lower::findThinSections(model.derivation, *model.model, model.tape(), .2f, 2, nullptr, &none)->empty());
+    EXPECT_TRUE(lower::findThinSections(model.derivation, *model.model, model.tape(), .05f, 2, nullptr)->empty());
+    Progress progress;
+    progress.cancel();
+    EXPECT_FALSE(lower::findThinSections(model.derivation, *model.model, model.tape(), .2f, 2, &progress).ok());
 }
 
 TEST_P(Thin, PartsOfTwoCellsAreAllThere) {

@@ -63,6 +63,31 @@ TEST(Refining, CellsAreHalvedAgainWhereThePartIsThinnerThanItsScope) {
     EXPECT_TRUE(fine.missing->empty());
 }
 
+/// The bars of a window are what its lights leave: no part is thin.
+TEST(Refining, WallsThatCutsLeaveAreThere) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\n"
+        "start A -> cube size (8m, 8m, .6m) - Lights size (6.03m, 6m, 200%)\n"
+        "rule Lights -> split x { .7m: cube | .1m: nil | .87m: cube | .1m: nil | .93m: cube | .1m: nil | .61m: cube | "
+        ".1m: nil | .79m: cube | .1m: nil | ~1: cube }\n",
+        context);
+    const MeshedModel coarse = meshed(model, 32, 0), fine = meshed(model, 32, 3);
+    const auto missing = missingParts(model, coarse);
+    ASSERT_FALSE(missing.empty());
+    for (const lower::ThinPart& m : missing) {
+        EXPECT_GE(m.face, 0);
+        EXPECT_NEAR(m.thickness_m, .1, .02);
+    }
+    const auto warnings = missingWarnings(model, coarse.grid, missing);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].text.find("walls of 0.1"), std::string::npos) << warnings[0].text;
+    EXPECT_TRUE(fine.missing->empty());
+    EXPECT_NEAR(mesh::measure(fine.mesh).volume_m3, .6 * (64 - 5.53 * 6), .01);
+    const auto word = mesh::validate(fine.mesh);
+    EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects);
+}
+
 TEST(Refining, WhatIsTooThinEvenForHalvedCellsIsNamed) {
     Context context{nullptr, 2};
     const Model model = modelOf("grammar 2\nstart A -> cube size 8m + cube size (.05m, 4m, .05m) at +y\n", context);

@@ -1,0 +1,41 @@
+// Walls that stand between two cuts, or gaps between two parts, thinner than a mesh's cells: thick parts can leave
+// them. Enters: a derivation and its model. Leaves: where they are. Assumes nothing of a mesh.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "grammar/lower/lower.h"
+#include "modeler/core/progress.h"
+#include "modeler/eval/tape.h"
+
+namespace sgm::lower {
+
+/// A face of a cut beside which the solid is thin.
+struct ThinSection {
+    /// A point of the surface, and whose it is.
+    struct Crossing {
+        Vec3f at;
+        OriginId owner = 0;
+    };
+    OriginId part = 0;
+    int face = 0;                                ///< of its scope: 2 · axis + (high side)
+    double thickness_m = 0;                      ///< the least
+    derive::Scope scope;                         ///< the face, as thick as that
+    std::vector<std::array<Crossing, 2>> lines;  ///< across the face: its own surface and the next one
+};
+
+/// A face of a part's scope.
+struct PartFace {
+    OriginId part = 0;
+    int face = 0;
+};
+
+/// Looks beyond the faces of parts that are cut from others, on up to 576 lines each, for surface that is less than one
+/// and a half cells of `cell_m` metres away. Of all these parts, or of some faces where `among` isn't null. In order of
+/// part and face. 50 to 1,800 evaluations of a shortened tape a face, O(n log n); `threads` 0: all. Error::Cancelled.
+Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& derivation, const Model& model,
+                                                  const eval::Tape& tape, float cell_m, int threads, Progress* progress,
+                                                  const std::vector<PartFace>* among = nullptr);
+
+}  // namespace sgm::lower
