@@ -155,18 +155,18 @@ TEST_F(Cli, PartsThatTheCellsOfAnObjectLackAreTold) {
     const std::string lacks = "lacks 100 % of the surface: --object-cell ";
     const Outcome built = sgm("build " + file + " --halvings 0 -o " + path("a.glb"));
     EXPECT_EQ(built.code, 0);
-    EXPECT_NE(built.out.find(":4: a 'cube' of 0.05 m is thinner than the cells of 'House' of 0.157 m and " + lacks),
+    EXPECT_NE(built.out.find(":4: a 'cube' of 0.05 m is too thin for the cells of 'House' of 0.157 m and " + lacks),
               std::string::npos)
         << built.out;
     const size_t at = built.out.find(lacks) + lacks.size();
     const std::string cell = built.out.substr(at, built.out.find(' ', at) - at);
     const Outcome finer = sgm("build " + file + " --halvings 0 --object-cell " + cell + " -o " + path("a.glb"));
-    EXPECT_EQ(finer.out.find("thinner"), std::string::npos) << cell << finer.out;
-    EXPECT_EQ(sgm("build " + file + " -o " + path("a.glb")).out.find("thinner"), std::string::npos);
+    EXPECT_EQ(finer.out.find("too thin"), std::string::npos) << cell << finer.out;
+    EXPECT_EQ(sgm("build " + file + " -o " + path("a.glb")).out.find("too thin"), std::string::npos);
     EXPECT_EQ(sgm("build " + file + " -q -o " + path("a.glb")).out, "");
     const Outcome drawn = sgm("render " + file + " --size 32x32 --halvings 0 -o " + path("a.png"));
     if (drawn.out.find("EGL") != std::string::npos) return;  // nothing can be drawn here
-    EXPECT_NE(drawn.out.find("thinner than the cells of 'House'"), std::string::npos) << drawn.out;
+    EXPECT_NE(drawn.out.find("too thin for the cells of 'House'"), std::string::npos) << drawn.out;
     EXPECT_EQ(drawn.out.find("--resolution"), std::string::npos) << drawn.out;
 }
 
@@ -179,9 +179,9 @@ TEST_F(Cli, PicturesWarnAtTheCellsThatAreAskedFor) {
     };
     if (drawn("").find("EGL") != std::string::npos) GTEST_SKIP() << "nothing can be drawn here";
     EXPECT_NE(drawn("").find("the mesh's cells of 0.156 m"), std::string::npos);
-    EXPECT_EQ(drawn("--resolution 420").find("thinner"), std::string::npos);
+    EXPECT_EQ(drawn("--resolution 420").find("too thin"), std::string::npos);
     EXPECT_NE(drawn("--resolution 64").find("the mesh's cells of 0.313 m"), std::string::npos);
-    EXPECT_EQ(drawn("--cell .04").find("thinner"), std::string::npos);
+    EXPECT_EQ(drawn("--cell .04").find("too thin"), std::string::npos);
 }
 
 }  // namespace
