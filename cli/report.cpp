@@ -80,7 +80,7 @@ Json floatingFigures(const Model& model, const Support& support) {
     return list;
 }
 
-/// The parts that are too thin for the cells, and walls beside parts, which the mesh lacks.
+/// The parts that are too thin for the cells, and the walls at faces of cuts, which the mesh lacks.
 Json missingFigures(const Model& model, const std::vector<lower::ThinPart>& missing) {
     Json list = Json::array();
     for (const lower::ThinPart& m : missing) {
@@ -88,7 +88,7 @@ Json missingFigures(const Model& model, const std::vector<lower::ThinPart>& miss
         list.push_back({{"path", part.path.text()},
                         {"file", part.file()},
                         {"line", part.line()},
-                        {"beside", m.face >= 0},
+                        {"wall", m.face >= 0},
                         {"thickness_m", m.thickness_m},
                         {"cell_m", m.cell_m},
                         {"missing", m.missing}});

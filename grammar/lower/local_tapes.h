@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "modeler/core/parallel.h"
+#include "modeler/core/progress.h"
 #include "modeler/eval/evaluate.h"
 
 namespace sgm::lower {
@@ -16,35 +18,35 @@ namespace sgm::lower {
 /// One worker's.
 class LocalTapes {
 public:
-    static constexpr size_t most = 64;  ///< boxes at once
+    static constexpr size_t mostBoxes = 64;  ///< at once
 
     /// `tape` has to stay.
     explicit LocalTapes(const eval::Tape& tape) : tape_(tape) {}
 
-    /// Calls visit(i, tape) for those of at most `most` boxes that may hold surface.
+    /// Calls visit(i, tape) for those of at most `mostBoxes` boxes that may hold surface.
     template <class Visit>
     void visit(std::span<const Box3f> boxes, Visit&& visit) {
         const Box3f all = boxAround(boxes);
-        shortenTo(tape_, {&all, 1}, {&group_, 1});
-        if (group_.isEmpty) return;
-        std::array<Box3f, most / together> around;
-        const size_t count = (boxes.size() + together - 1) / together;
-        const auto some = [&](size_t k) {
-            return boxes.subspan(k * together, std::min(together, boxes.size() - k * together));
+        shortenTo(tape_, {&all, 1}, {&all_, 1});
+        if (all_.isEmpty) return;
+        std::array<Box3f, mostBoxes / boxesPerTape> around;
+        const size_t count = (boxes.size() + boxesPerTape - 1) / boxesPerTape;
+        const auto group = [&](size_t k) {
+            return boxes.subspan(k * boxesPerTape, std::min(boxesPerTape, boxes.size() - k * boxesPerTape));
         };
-        for (size_t k = 0; k < count; ++k) around[k] = boxAround(some(k));
-        shortenTo(group_.tape, {around.data(), count}, some_);
+        for (size_t k = 0; k < count; ++k) around[k] = boxAround(group(k));
+        shortenTo(all_.tape, {around.data(), count}, groups_);
         for (size_t k = 0; k < count; ++k) {
-            if (some_[k].isEmpty) continue;
-            shortenTo(some_[k].tape, some(k), each_);
-            for (size_t i = 0; i < some(k).size(); ++i)
-                if (!each_[i].isEmpty) visit(k * together + i, std::as_const(each_[i].tape));
+            if (groups_[k].isEmpty) continue;
+            shortenTo(groups_[k].tape, group(k), each_);
+            for (size_t i = 0; i < group(k).size(); ++i)
+                if (!each_[i].isEmpty) visit(k * boxesPerTape + i, std::as_const(each_[i].tape));
         }
     }
     eval::Workspace& workspace() { return workspace_; }
 
 private:
-    static constexpr size_t together = 8;  ///< boxes that are shortened from one tape
+    static constexpr size_t boxesPerTape = 8;  ///< that are shortened from one tape
 
     /// A tape for a box.
     struct Local {
@@ -59,7 +61,7 @@ private:
     }
     /// Leaves in `to` what matters in each box.
     void shortenTo(const eval::Tape& from, std::span<const Box3f> boxes, std::span<Local> to) {
-        std::array<eval::FloatInterval, most> ranges;
+        std::array<eval::FloatInterval, mostBoxes> ranges;
         const eval::RangeTrace trace =
             eval::evaluateRanges(from, {boxes.data(), boxes.size()}, ranges.data(), workspace_);
         for (size_t i = 0; i < boxes.size(); ++i) {
@@ -69,10 +71,38 @@ private:
     }
 
     const eval::Tape& tape_;
-    Local group_;
-    std::array<Local, most / together> some_;
-    std::array<Local, together> each_;
+    Local all_;
+    std::array<Local, mostBoxes / boxesPerTape> groups_;
+    std::array<Local, boxesPerTape> each_;
     eval::Workspace workspace_;
+};
+
+/// Points as the evaluation takes them.
+struct PointList {
+    std::vector<float> x, y, z;
+    void clear() { x.clear(), y.clear(), z.clear(); }
+    void add(Vec3f p) { x.push_back(p.x), y.push_back(p.y), z.push_back(p.z); }
+    Vec3f operator[](size_t i) const { return {x[i], y[i], z[i]}; }
+    size_t size() const { return x.size(); }
+    eval::Points points() const { return {x.data(), y.data(), z.data(), x.size()}; }
+};
+
+/// Whose surface points lie on. One worker's.
+class SurfaceOwners {
+public:
+    /// By point; 0 where another part's surface is the same, for a mesh may have it as that part's.
+    const std::vector<OriginId>& at(const PointList& points, const eval::Tape& tape, eval::Workspace& workspace) {
+        owners_.resize(points.size()), tied_.resize(points.size()), labels_.resize(points.size());
+        eval::evaluateOrigin(tape, points.points(), owners_.data(), workspace);
+        eval::evaluateLabels(tape, points.points(), labels_.data(), tied_.data(), workspace);
+        for (size_t i = 0; i < owners_.size(); ++i)
+            if (tied_[i] != owners_[i]) owners_[i] = 0;
+        return owners_;
+    }
+
+private:
+    std::vector<OriginId> owners_, tied_;  ///< where several tie, the first of them in `tied_`
+    std::vector<uint32_t> labels_;
 };
 
 /// Orders items so that halves of the list, and halves of these, lie beside each other. `centreOf` gives an item's
@@ -93,14 +123,21 @@ void orderByPlace(std::span<Item> items, CentreOf centreOf, NumberOf numberOf) {
     orderByPlace(items.subspan(items.size() / 2), centreOf, numberOf);
 }
 
-/// Points as the evaluation takes them.
-struct PointList {
-    std::vector<float> x, y, z;
-    void clear() { x.clear(), y.clear(), z.clear(); }
-    void add(Vec3f p) { x.push_back(p.x), y.push_back(p.y), z.push_back(p.z); }
-    Vec3f operator[](size_t i) const { return {x[i], y[i], z[i]}; }
-    size_t size() const { return x.size(); }
-    eval::Points points() const { return {x.data(), y.data(), z.data(), x.size()}; }
-};
+/// Calls probe(prober, items, number of the first) for groups of at most LocalTapes::mostBoxes items that follow each
+/// other, on `threads` threads (0: all), each with a prober that `make` makes; ticks for every item.
+template <class Item, class Make, class Probe>
+void probeInGroups(std::span<Item> items, int threads, Progress* progress, const char* stage, Make make, Probe probe) {
+    std::vector<decltype(make())> probers;
+    probers.reserve(static_cast<size_t>(threadCount(threads)));
+    for (int w = 0; w < threadCount(threads); ++w) probers.push_back(make());
+    if (progress) progress->begin(stage, items.size());
+    const size_t groups = (items.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes;
+    parallelFor(groups, threads, progress, [&](size_t group, int worker) {
+        const size_t first = group * LocalTapes::mostBoxes,
+                     count = std::min(LocalTapes::mostBoxes, items.size() - first);
+        probe(probers[static_cast<size_t>(worker)], items.subspan(first, count), group);
+        for (size_t i = 0; i < count; ++i) tick(progress);
+    });
+}
 
 }  // namespace sgm::lower

@@ -6,25 +6,43 @@
 
 namespace sgm::lower {
 
-Presence::Presence(const mesh::Mesh& mesh, const std::vector<bool>& isThin, float cell_m) : perMetre_(4 / cell_m) {
+Presence::Presence(const mesh::Mesh& mesh, std::span<const Extent> asked, std::span<const Vec3f> points, float cell_m)
+    : perMetre_(4 / cell_m) {
+    constexpr OriginId any = 0;
+    const float perMetre = 0.5f / cell_m;  // of cells of twice the edge: the eight around a point reach a cell far
+    const auto largeCell = [&](Vec3f p) {
+        const Vec3f at = p * perMetre;
+        return Vec3i{static_cast<int>(std::floor(at.x)), static_cast<int>(std::floor(at.y)),
+                     static_cast<int>(std::floor(at.z))};
+    };
+    NumberSet around;
+    for (const Vec3f& p : points)
+        for (int corner = 0; corner < 8; ++corner) {
+            const Vec3f sign{corner & 1 ? 1.0f : -1.0f, corner & 2 ? 1.0f : -1.0f, corner & 4 ? 1.0f : -1.0f};
+            around.insert(keyOf(largeCell(p + sign * cell_m), any));
+        }
     std::vector<const Vec3f*> positions;
     positions.reserve(mesh.vertexCount());
     for (const mesh::Chunk& c : mesh.chunks)
         for (const Vec3f& p : c.positions) positions.push_back(&p);
-    uint64_t last = 0;
     for (const mesh::Chunk& c : mesh.chunks)
         for (size_t t = 0; t < c.origins.size(); ++t) {
-            if (!isThin[c.origins[t]]) continue;
+            if (asked[c.origins[t]] == Extent::Nothing) continue;
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
-            const Vec3f p = *positions[corners[0]], q = *positions[corners[1]] - p, r = *positions[corners[2]] - p;
-            constexpr int parts = 4;  // of each side
-            for (int u = 0; u <= parts; ++u)
-                for (int v = 0; u + v <= parts; ++v) {
-                    const Vec3f at = p + q * (static_cast<float>(u) / parts) + r * (static_cast<float>(v) / parts);
-                    const uint64_t key = keyOf(cellOf(at), c.origins[t]);
-                    if (key != last) cells_.insert(key);
-                    last = key;
-                }
+            const Vec3f p = *positions[corners[0]], q = *positions[corners[1]], r = *positions[corners[2]];
+            if (asked[c.origins[t]] == Extent::All || around.contains(keyOf(largeCell((p + q + r) * (1.0f / 3)), any)))
+                addTriangle(p, q, r, c.origins[t]);
+        }
+}
+
+void Presence::addTriangle(Vec3f p, Vec3f q, Vec3f r, OriginId part) {
+    constexpr int parts = 4;  // of each side
+    for (int u = 0; u <= parts; ++u)
+        for (int v = 0; u + v <= parts; ++v) {
+            const Vec3f at = p + (q - p) * (static_cast<float>(u) / parts) + (r - p) * (static_cast<float>(v) / parts);
+            const uint64_t key = keyOf(cellOf(at), part);
+            if (key != last_) cells_.insert(key);
+            last_ = key;
         }
 }
 

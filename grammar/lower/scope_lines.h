@@ -13,6 +13,15 @@ namespace sgm::lower {
 inline constexpr int fewestLines = 4, mostLines = 16;  ///< along an axis across the thin one
 inline constexpr double lineReach = 1.02;              ///< of a scope's half extent, so that its own faces are crossed
 
+inline Vec3d alongAxis(int axis) { return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}; }
+
+/// Cells up to this size, times the thickness, hold a plate across an axis of the scope, however it is turned: along
+/// the world's axes a sample lies in whatever is as thick as a cell.
+inline double turnOf(const derive::Scope& scope, int axis) {
+    const Vec3d d = scope.axes * alongAxis(axis);
+    return 1 / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+}
+
 /// Where the i-th of n lines passes a half extent: denser towards the ends, for a bar may run through a house and show
 /// these alone; off the middle, so that no line lies in a plane of symmetry.
 inline double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }
@@ -34,7 +43,8 @@ void eachUprightLine(const derive::Scope& scope, double wall_m, Visit&& visit) {
 template <class Visit>
 bool eachLine(const derive::Scope& scope, double cell_m, Visit&& visit) {
     const auto linesAlong = [&](int across) {
-        return std::clamp(static_cast<int>(std::ceil(scope.size[across] / cell_m)), fewestLines, mostLines);
+        return static_cast<int>(
+            std::clamp(std::ceil(scope.size[across] / cell_m), double{fewestLines}, double{mostLines}));
     };
     for (int axis = 0; axis < 3; ++axis) {
         if (!(scope.size[axis] < cell_m || scope.size[axis] == minComponent(scope.size))) continue;

@@ -10,7 +10,7 @@ namespace sgm::lower {
 /// How often cells of `cell_m` metres have to be halved until they hold a part.
 int halvingsFor(const ThinPart& part, float cell_m);
 
-/// About as many cells as addCellsAround looks at.
+/// As many cells as addCellsAround looks at.
 double countCellsAround(const ThinPart& part, const mesh::Grid& grid);
 
 /// Adds the cells of `grid` whose middles lie within one and a half cells of where a part is. O(cells of the box around

@@ -22,7 +22,7 @@ constexpr int halvings = 6;                       ///< of a step around a crossi
 constexpr size_t fewestCrossings = 3;             ///< of a part that isn't buried
 constexpr double leastMissing = 0.1;              ///< share of the surface that a part in the list lacks
 constexpr double mostlyFree = 0.9;                ///< of the lines through a plate meet both its faces
-constexpr double leastMissingArea = 0.2;          ///< share of a plate's area, which is known less well
+constexpr double leastMissingArea = 0.25;         ///< share of a plate's area, which is known less well
 constexpr double leaningWall = 1.42;              ///< cells that hold a wall of any plan or a shell are thinner by this
 constexpr double probed = 1.1 * lineReach;        ///< of a scope: where its part is looked for
 
@@ -69,9 +69,7 @@ void measureFacing(const mesh::Mesh& mesh, std::span<Candidate> parts, size_t pa
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
             const Vec3f p = *positions[corners[0]];
             const Vec3d twice = cross(*positions[corners[1]] - p, *positions[corners[2]] - p).as<double>();
-            Vec3d across{};
-            across[plate->plateAxis] = 1;
-            plate->facing_m2 += 0.5 * std::abs(dot(twice, plate->scope.axes * across));
+            plate->facing_m2 += 0.5 * std::abs(dot(twice, plate->scope.axes * alongAxis(plate->plateAxis)));
         }
 }
 
@@ -81,7 +79,7 @@ public:
     Prober(const eval::Tape& tape, const Presence& presence, float cell_m)
         : tapes_(tape), presence_(presence), cell_m_(static_cast<double>(cell_m)) {}
 
-    /// Looks for at most LocalTapes::most parts that lie beside each other.
+    /// Looks for at most LocalTapes::mostBoxes parts that lie beside each other.
     void probe(std::span<Candidate> parts) {
         std::vector<Box3f> boxes;
         for (const Candidate& c : parts) boxes.push_back(boxOf(c.scope, probed).as<float>());
@@ -93,13 +91,10 @@ private:
         const OriginId part = candidate.part;
         findCrossings(candidate, tape);
         if (inside_.empty()) return 0;
-        // Where another part's surface is the same, a mesh may have it as that part's.
-        owners_.resize(middles_.size()), tied_.resize(owners_.size()), labels_.resize(owners_.size());
-        eval::evaluateOrigin(tape, middles_.points(), owners_.data(), tapes_.workspace());
-        eval::evaluateLabels(tape, middles_.points(), labels_.data(), tied_.data(), tapes_.workspace());
+        const std::vector<OriginId>& owners = owners_.at(middles_, tape, tapes_.workspace());
         int met = 0, lacks = 0;
-        for (size_t i = 0; i < owners_.size(); ++i) {
-            if (owners_[i] != part || tied_[i] != part) continue;
+        for (size_t i = 0; i < owners.size(); ++i) {
+            if (owners[i] != part) continue;
             ++met, lacks += !presence_.isNear(middles_[i], part);
         }
         if (met < static_cast<int>(fewestCrossings)) return 0;
@@ -156,25 +151,20 @@ private:
 
     LocalTapes tapes_;
     const Presence& presence_;
-    const double cell_m_;
+    double cell_m_;
     PointList rows_, middles_;
     std::vector<float> values_;
-    std::vector<OriginId> owners_, tied_;  ///< at the middles; where several tie, the first of them in `tied_`
-    std::vector<uint32_t> labels_;
+    SurfaceOwners owners_;
     std::vector<Vec3f> inside_, outside_;
 };
 
-/// The largest cells that hold a thin scope. Along the axes a sample lies in whatever is as thick as a cell; what is
-/// turned needs more.
+/// The largest cells that hold a thin scope.
 double cellThatHolds(const derive::Scope& scope) {
-    double least = minComponent(scope.size);
-    double most = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (scope.size[axis] > 1.01 * least) continue;
-        const Vec3d d = scope.axes * Vec3d{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
-        most = std::max(most, std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
-    }
-    return least / most;
+    const double least = minComponent(scope.size);
+    double turn = 1;
+    for (int axis = 0; axis < 3; ++axis)
+        if (scope.size[axis] <= 1.01 * least) turn = std::min(turn, turnOf(scope, axis));
+    return least * turn;
 }
 
 /// The least thickness of walls and shells that a solid's parameters say, metres; infinite where they say none.
@@ -187,16 +177,16 @@ double wallOf(const derive::SolidValue& solid) {
     return least;
 }
 
-/// Parts and faces that are looked at among others.
-struct Among {
+/// Which parts and faces are looked at.
+struct PartFilter {
     std::optional<std::vector<bool>> parts;  ///< by part; all where there is none
     std::optional<std::vector<PartFace>> faces;
 
-    Among(const std::vector<ThinPart>* some, size_t count) {
-        if (!some) return;
+    PartFilter(const std::vector<ThinPart>* among, size_t count) {
+        if (!among) return;
         parts.emplace(count);
         faces.emplace();
-        for (const ThinPart& t : *some)
+        for (const ThinPart& t : *among)
             if (t.face < 0)
                 (*parts)[t.part] = true;
             else
@@ -234,25 +224,47 @@ void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Pres
     std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
     orderByPlace(
         std::span(thin), [](const Candidate& c) { return c.scope.centre; }, [](const Candidate& c) { return c.part; });
-    std::vector<Prober> probers;
-    probers.reserve(static_cast<size_t>(threadCount(threads)));
-    for (int w = 0; w < threadCount(threads); ++w) probers.emplace_back(tape, presence, cell_m);
-    if (progress) progress->begin("thin parts", thin.size());
-    const size_t groups = (thin.size() + LocalTapes::most - 1) / LocalTapes::most;
-    parallelFor(groups, threads, progress, [&](size_t group, int worker) {
-        const size_t first = group * LocalTapes::most, count = std::min(LocalTapes::most, thin.size() - first);
-        probers[static_cast<size_t>(worker)].probe(std::span(thin).subspan(first, count));
-        for (size_t i = 0; i < count; ++i) tick(progress);
-    });
+    probeInGroups(
+        std::span(thin), threads, progress, "thin parts", [&] { return Prober(tape, presence, cell_m); },
+        [](Prober& prober, std::span<Candidate> some, size_t) { prober.probe(some); });
 }
 
-/// The share of a section's lines on which the mesh has neither surface; 0 where it is buried.
-double missingOf(const ThinSection& section, const Presence& presence) {
-    const auto isNear = [&](const ThinSection::Crossing& c) { return presence.isNear(c.at, c.owner); };
-    const auto lacks = std::count_if(section.lines.begin(), section.lines.end(),
-                                     [&](const auto& line) { return !isNear(line[0]) && !isNear(line[1]); });
-    const size_t lines = section.lines.size();
-    return lines < fewestCrossings ? 0 : static_cast<double>(lacks) / static_cast<double>(lines);
+/// The wall at a section where the mesh has neither of its surfaces on more than a tenth of the lines.
+std::optional<ThinPart> lackedWall(const ThinSection& section, const Presence& presence, double cell_m) {
+    if (section.lines.size() < fewestCrossings) return std::nullopt;
+    const int axis = section.face / 2;
+    const Mat3 local = section.scope.axes.transposed();
+    std::vector<double> thicknesses_m;
+    Box3d box;
+    for (const ThinSection::Line& line : section.lines) {
+        const auto isNear = [&](const ThinSection::Crossing& c) { return presence.isNear(c.at, c.owner); };
+        if (isNear(line.ends[0]) || isNear(line.ends[1])) continue;
+        thicknesses_m.push_back(line.thickness_m);
+        for (const auto& end : line.ends) box = hull(box, local * (end.at.as<double>() - section.scope.centre));
+    }
+    const double missing = static_cast<double>(thicknesses_m.size()) / static_cast<double>(section.lines.size());
+    if (!(missing > leastMissing)) return std::nullopt;
+    const auto middle = thicknesses_m.begin() + static_cast<ptrdiff_t>(thicknesses_m.size() / 2);
+    std::nth_element(thicknesses_m.begin(), middle, thicknesses_m.end());
+    derive::Scope scope{section.scope.centre + section.scope.axes * box.centre(), section.scope.axes, box.size()};
+    scope.size[(axis + 1) % 3] += section.spacing_m, scope.size[(axis + 2) % 3] += section.spacing_m;
+    return ThinPart{section.part, section.face, *middle, std::min(*middle * turnOf(scope, axis), cell_m / 2),
+                    missing,      scope};
+}
+
+/// Knows where the mesh has the parts, and the walls at the sections.
+Presence presenceOf(const mesh::Mesh& mesh, std::span<const Candidate> thin, std::span<const ThinSection> sections,
+                    size_t partCount, float cell_m) {
+    std::vector<Presence::Extent> asked(partCount, Presence::Extent::Nothing);
+    std::vector<Vec3f> points;
+    for (const ThinSection& section : sections)
+        for (const ThinSection::Line& line : section.lines)
+            for (const ThinSection::Crossing& end : line.ends) {
+                asked[end.owner] = Presence::Extent::NearPoints;
+                points.push_back(end.at);
+            }
+    for (const Candidate& c : thin) asked[c.part] = Presence::Extent::All;
+    return Presence(mesh, asked, points, cell_m);
 }
 
 }  // namespace
@@ -262,16 +274,13 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
                                                int threads, Progress* progress, const std::vector<ThinPart>* among) {
     if (mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     const auto cell = static_cast<double>(cell_m);
-    const Among some(among, model.shapeOf.size());
-    std::vector<Candidate> thin = thinParts(derivation, model, cell, some.parts);
+    const PartFilter filter(among, model.shapeOf.size());
+    std::vector<Candidate> thin = thinParts(derivation, model, cell, filter.parts);
     const auto sections =
-        findThinSections(derivation, model, tape, cell_m, threads, progress, some.faces ? &*some.faces : nullptr);
+        findThinSections(derivation, model, tape, cell_m, threads, progress, filter.faces ? &*filter.faces : nullptr);
     if (!sections.ok()) return sections.error();
-    std::vector<bool> isThin(model.shapeOf.size());
-    for (const Candidate& c : thin) isThin[c.part] = true;
-    for (const ThinSection& section : *sections)
-        for (const auto& line : section.lines) isThin[line[0].owner] = isThin[line[1].owner] = true;
-    const Presence presence(mesh, isThin, cell_m);
+    if (thin.empty() && sections->empty()) return std::vector<ThinPart>{};
+    const Presence presence = presenceOf(mesh, thin, *sections, model.shapeOf.size(), cell_m);
     measureFacing(mesh, thin, model.shapeOf.size());
     probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();
@@ -282,10 +291,8 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
         const double holding_m = wall ? c.wall_m / leaningWall : cellThatHolds(c.scope);
         found.push_back({c.part, -1, wall ? c.wall_m : minComponent(c.scope.size), holding_m, c.missing, c.scope});
     }
-    for (const ThinSection& s : *sections)
-        if (const double missing = missingOf(s, presence); missing > leastMissing)
-            found.push_back(
-                {s.part, s.face, s.thickness_m, std::min(cellThatHolds(s.scope), cell / 2), missing, s.scope});
+    for (const ThinSection& section : *sections)
+        if (const auto wall = lackedWall(section, presence, cell)) found.push_back(*wall);
     std::sort(found.begin(), found.end(), [](const ThinPart& a, const ThinPart& b) {
         return std::pair(a.part, a.face) < std::pair(b.part, b.face);
     });

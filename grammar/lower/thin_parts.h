@@ -10,15 +10,16 @@
 
 namespace sgm::lower {
 
-/// A part that is too thin for the cells, or a wall of solid or air beside one of its faces: the mesh shows none of it
-/// in places.
+/// A part that is too thin for the cells, or a thin wall at a face of a cut: the mesh shows none of it in places.
 struct ThinPart {
-    OriginId part = 0;
-    int face = -1;  ///< of the part's scope, beside which the wall is: 2 · axis + (high side); −1: the part itself
-    double thickness_m = 0;  ///< the least extent of its shape's scope, or of its walls or shell; of the wall
+    OriginId part = 0;       ///< or the cut
+    int face = -1;           ///< of the cut's scope: 2 · axis + (high side); −1 for a part
+    double thickness_m = 0;  ///< the least extent of the part's scope, or of its walls or shell; of the wall
     double cell_m = 0;       ///< cells no larger than this hold it
-    double missing = 0;      ///< share of its surface without a triangle within half a cell, or of a plate's area
-    derive::Scope scope;     ///< where it is
+    /// Share of the part's surface without a triangle within half a cell, or of a plate's area; of lines across the
+    /// wall with neither of its surfaces.
+    double missing = 0;
+    derive::Scope scope;  ///< where it is
 };
 
 /// Looks at the parts whose scope is somewhere thinner than a cell, or whose walls or shell are (parapets, roofs that
@@ -27,8 +28,8 @@ struct ThinPart {
 /// mesh cover its faces? Likewise at thin walls that cuts leave (`findThinSections`). Those that lack more than a
 /// tenth, ascending by part. What else is thin within a thicker scope, as a needle's point or a fractal's ornament,
 /// isn't looked for. Empty for a mesh without origins. Only those `among` others are looked at, where that isn't null.
-/// About 4,000 evaluations of a shortened tape a thin part, 33,000 at most for walls, O(n log n); `threads` 0: all.
-/// Error::Cancelled.
+/// About 4,000 evaluations of a shortened tape a thin part, 33,000 at most for walls, 300 to 10,000 a cut, O(n log n);
+/// `threads` 0: all. Error::Cancelled.
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress,

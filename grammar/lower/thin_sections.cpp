@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
 #include "grammar/lower/local_tapes.h"
-#include "modeler/core/parallel.h"
+#include "grammar/lower/scope_lines.h"
 
 namespace sgm::lower {
 namespace {
 
 constexpr int fewestAlong = 5, mostAlong = 24;  ///< lines along an axis of a face
-constexpr size_t mostFollowed = 64;             ///< lines of a face that go into solid
+constexpr size_t mostFollowed = 16;             ///< lines of a face that go into solid
 constexpr int stepHalvings = 8;                 ///< of a step around a crossing
 // In cells, from a face outwards:
 constexpr double firstSample = -0.12, step = 0.25, farthest = 1.63;
@@ -26,12 +27,12 @@ struct FacedPart {
     uint32_t faces = 0;  ///< as a mask
 };
 
-Vec3d unit(int axis) { return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}; }
-
 /// One worker's.
 class SectionProber {
 public:
-    SectionProber(const eval::Tape& tape, float cell_m) : tapes_(tape), cell_m_(static_cast<double>(cell_m)) {}
+    /// `bounds` hold the field's surface.
+    SectionProber(const eval::Tape& tape, const Box3f& bounds, float cell_m)
+        : tapes_(tape), bounds_(bounds), cell_m_(static_cast<double>(cell_m)) {}
 
     void probe(std::span<const FacedPart> parts, std::vector<ThinSection>& found) {
         std::vector<Box3f> boxes;
@@ -47,45 +48,50 @@ private:
     /// A line across a face.
     struct Line {
         Vec3d from;
-        double first_m = 0, next_m = 0;  ///< where the steps begin that hold the face's surface, and the next one
+        double next_m = 0;  ///< where the step begins that holds the next surface
     };
 
     void probeFace(const FacedPart& part, int face, const eval::Tape& tape, std::vector<ThinSection>& found) {
-        const int axis = face / 2;
-        const Vec3d out = part.scope.axes * unit(axis) * (face % 2 ? 1.0 : -1.0);
-        listLines(part.scope, face);
+        const Vec3d out = part.scope.axes * alongAxis(face / 2) * (face % 2 ? 1.0 : -1.0);
+        ThinSection section{part.part, face, part.scope, 0, {}};
+        section.spacing_m = listLines(part.scope, face);
         keepCrossing(out, tape);
         if (lines_.empty()) return;
         findNext(out, tape);
         if (lines_.empty()) return;
-        ThinSection section{part.part, face, INFINITY, part.scope, {}};
         findCrossings(out, tape, section);
-        if (section.lines.empty()) return;
-        section.scope.footprint = derive::none;
-        section.scope.centre += out * (part.scope.size[axis] + section.thickness_m) * 0.5;
-        section.scope.size[axis] = section.thickness_m;
-        found.push_back(std::move(section));
+        if (!section.lines.empty()) found.push_back(std::move(section));
     }
 
-    /// Lines through a face, a cell apart where that is possible: of a cut that is larger than what it cuts, few meet
-    /// it.
-    void listLines(const derive::Scope& scope, int face) {
-        const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-        const auto along = [&](int across) {
-            return std::clamp(static_cast<int>(std::ceil(scope.size[across] / cell_m_)), fewestAlong, mostAlong);
-        };
+    /// Lines through what of a face lies in the bounds, a cell apart where that is possible: of a cut that is larger
+    /// than what it cuts, few meet it. Returns how far apart they are.
+    double listLines(const derive::Scope& scope, int face) {
+        const int axis = face / 2, across[] = {(axis + 1) % 3, (axis + 2) % 3};
+        std::array<double, 2> low{}, size{};  // metres from the scope's middle
+        std::array<int, 2> along{};
+        const Vec3d middle = bounds_.centre().as<double>() - scope.centre, half = bounds_.size().as<double>() * 0.5;
         lines_.clear();
-        for (int j = 0; j < along(v); ++j)
-            for (int i = 0; i < along(u); ++i) {
-                Vec3d share{};
-                share[axis] = face % 2 ? 1 : -1;
-                share[u] = evenShare(i, along(u)), share[v] = evenShare(j, along(v));
-                lines_.push_back({scope.point(share)});
+        for (size_t k = 0; k < 2; ++k) {
+            const Vec3d d = scope.axes * alongAxis(across[k]), a{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
+            const double reach = scope.size[across[k]] * 0.5;
+            low[k] = std::max(-reach, dot(d, middle) - dot(a, half));
+            size[k] = std::min(reach, dot(d, middle) + dot(a, half)) - low[k];
+            if (!(size[k] > 0)) return 0;
+            along[k] =
+                static_cast<int>(std::clamp(std::ceil(size[k] / cell_m_), double{fewestAlong}, double{mostAlong}));
+        }
+        const Vec3d corner = scope.centre + scope.axes * (alongAxis(axis) * scope.size[axis] * (face % 2 ? 0.5 : -0.5));
+        for (int j = 0; j < along[1]; ++j)
+            for (int i = 0; i < along[0]; ++i) {
+                const Vec3d at = alongAxis(across[0]) * (low[0] + size[0] * evenShare(i, along[0])) +
+                                 alongAxis(across[1]) * (low[1] + size[1] * evenShare(j, along[1]));
+                lines_.push_back({corner + scope.axes * at});
             }
+        return std::max(size[0] / along[0], size[1] / along[1]);
     }
 
     /// Off the middle, so that no line lies in a plane of symmetry.
-    static double evenShare(int i, int n) { return 2 * (i + 0.535) / n - 1; }
+    static double evenShare(int i, int n) { return (i + 0.535) / n; }
 
     double at(int sample) const { return (firstSample + step * sample) * cell_m_; }
 
@@ -115,8 +121,7 @@ private:
             for (int sample = 1; sample + 1 < samples; ++sample) {
                 if (values[sample] < 0) continue;
                 lines_[kept] = lines_[i];
-                lines_[kept].first_m = at(0), lines_[kept].next_m = at(sample);
-                ++kept;
+                lines_[kept++].next_m = at(sample);
                 break;
             }
         }
@@ -128,7 +133,7 @@ private:
         const auto point = [&](size_t i, double along) { return (lines_[i / 2].from + out * along).as<float>(); };
         std::vector<std::array<double, 2>> brackets;
         for (const Line& line : lines_)
-            for (const double from : {line.first_m, line.next_m}) brackets.push_back({from, from + step * cell_m_});
+            for (const double from : {at(0), line.next_m}) brackets.push_back({from, from + step * cell_m_});
         points_.clear();
         for (size_t i = 0; i < brackets.size(); ++i) points_.add(point(i, brackets[i][0]));
         evaluate(tape);
@@ -140,14 +145,11 @@ private:
             for (size_t i = 0; i < brackets.size(); ++i)
                 brackets[i][(atStart[i] < 0) == (values_[i] < 0) ? 0 : 1] = (brackets[i][0] + brackets[i][1]) * 0.5;
         }
-        // Where another part's surface is the same, a mesh may have it as that part's.
-        owners_.resize(points_.size()), tied_.resize(points_.size()), labels_.resize(points_.size());
-        eval::evaluateOrigin(tape, points_.points(), owners_.data(), tapes_.workspace());
-        eval::evaluateLabels(tape, points_.points(), labels_.data(), tied_.data(), tapes_.workspace());
+        const std::vector<OriginId>& owners = owners_.at(points_, tape, tapes_.workspace());
         for (size_t i = 0; i + 1 < points_.size(); i += 2) {
-            if (owners_[i] != section.part || tied_[i] != owners_[i] || tied_[i + 1] != owners_[i + 1]) continue;
-            section.thickness_m = std::min(section.thickness_m, brackets[i + 1][0] - brackets[i][0]);
-            section.lines.push_back({{{points_[i], owners_[i]}, {points_[i + 1], owners_[i + 1]}}});
+            if (owners[i] != section.part || owners[i + 1] == 0) continue;
+            section.lines.push_back(
+                {{{{points_[i], owners[i]}, {points_[i + 1], owners[i + 1]}}}, brackets[i + 1][0] - brackets[i][0]});
         }
     }
 
@@ -157,19 +159,21 @@ private:
     }
 
     LocalTapes tapes_;
-    const double cell_m_;
+    Box3f bounds_;
+    double cell_m_;
     std::vector<Line> lines_;
     PointList points_;
     std::vector<float> values_;
-    std::vector<OriginId> owners_, tied_;  ///< where several tie, the first of them in `tied_`
-    std::vector<uint32_t> labels_;
+    SurfaceOwners owners_;
 };
 
-/// Whether a shape, or one that holds it, is cut from what stands.
-bool isCut(const derive::Shapes& shapes, derive::ShapeId shape) {
-    for (; shape != derive::none; shape = shapes[shape].parent)
-        if (shapes[shape].op == rules::Operator::Difference) return true;
-    return false;
+/// By shape: whether it, or one that holds it, is cut from what stands.
+std::vector<bool> cutShapes(const derive::Shapes& shapes) {
+    std::vector<bool> cuts(shapes.size());
+    for (derive::ShapeId s = 0; s < shapes.size(); ++s)
+        cuts[s] =
+            shapes[s].op == rules::Operator::Difference || (shapes[s].parent != derive::none && cuts[shapes[s].parent]);
+    return cuts;
 }
 
 std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Model& model,
@@ -177,11 +181,12 @@ std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Mo
     std::vector<uint32_t> faces(model.shapeOf.size(), among ? 0u : 63u);
     if (among)
         for (const PartFace& face : *among) faces[face.part] |= 1u << face.face;
+    const std::vector<bool> cuts = cutShapes(derivation.tree.shapes);
     std::vector<FacedPart> all;
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         const derive::ShapeId shape = model.shapeOf[part];
         if (faces[part] == 0 || shape == derive::none || derivation.tree.shapes[shape].solid == derive::none) continue;
-        if (!isCut(derivation.tree.shapes, shape)) continue;
+        if (!cuts[shape]) continue;
         all.push_back({part, derive::liftedScope(derivation, shape), faces[part]});
     }
     orderByPlace(
@@ -195,17 +200,13 @@ Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& deri
                                                   const eval::Tape& tape, float cell_m, int threads, Progress* progress,
                                                   const std::vector<PartFace>* among) {
     const std::vector<FacedPart> parts = facedParts(derivation, model, among);
-    std::vector<SectionProber> probers;
-    probers.reserve(static_cast<size_t>(threadCount(threads)));
-    for (int w = 0; w < threadCount(threads); ++w) probers.emplace_back(tape, cell_m);
-    if (progress) progress->begin("thin walls", parts.size());
-    const size_t groups = (parts.size() + LocalTapes::most - 1) / LocalTapes::most;
-    std::vector<std::vector<ThinSection>> found(groups);
-    parallelFor(groups, threads, progress, [&](size_t group, int worker) {
-        const size_t first = group * LocalTapes::most, count = std::min(LocalTapes::most, parts.size() - first);
-        probers[static_cast<size_t>(worker)].probe(std::span(parts).subspan(first, count), found[group]);
-        for (size_t i = 0; i < count; ++i) tick(progress);
-    });
+    std::vector<std::vector<ThinSection>> found((parts.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes);
+    probeInGroups(
+        std::span(parts), threads, progress, "thin walls",
+        [&] { return SectionProber(tape, model.field.bounds, cell_m); },
+        [&](SectionProber& prober, std::span<const FacedPart> some, size_t group) {
+            prober.probe(some, found[group]);
+        });
     if (cancelled(progress)) return cancelledError();
     std::vector<ThinSection> all;
     for (std::vector<ThinSection>& some : found) std::move(some.begin(), some.end(), std::back_inserter(all));

@@ -18,11 +18,16 @@ struct ThinSection {
         Vec3f at;
         OriginId owner = 0;
     };
+    /// Across the wall, from the face's own surface to the next one.
+    struct Line {
+        std::array<Crossing, 2> ends;
+        double thickness_m = 0;
+    };
     OriginId part = 0;
-    int face = 0;                                ///< of its scope: 2 · axis + (high side)
-    double thickness_m = 0;                      ///< the least
-    derive::Scope scope;                         ///< the face, as thick as that
-    std::vector<std::array<Crossing, 2>> lines;  ///< across the face: its own surface and the next one
+    int face = 0;          ///< of its scope: 2 · axis + (high side)
+    derive::Scope scope;   ///< of the part
+    double spacing_m = 0;  ///< of the lines, at most
+    std::vector<Line> lines;
 };
 
 /// A face of a part's scope.
@@ -31,9 +36,10 @@ struct PartFace {
     int face = 0;
 };
 
-/// Looks beyond the faces of parts that are cut from others, on up to 576 lines each, for surface that is less than one
-/// and a half cells of `cell_m` metres away. Of all these parts, or of some faces where `among` isn't null. In order of
-/// part and face. 50 to 1,800 evaluations of a shortened tape a face, O(n log n); `threads` 0: all. Error::Cancelled.
+/// Looks beyond the faces of parts that are cut from others, on lines a cell of `cell_m` metres apart (at most 576 a
+/// face, of which 16 are followed), for surface that is less than one and a half cells away. A round cut has surface at
+/// its faces' middles alone. Of all these parts, or of some faces where `among` isn't null. In order of part and face.
+/// 50 to 1,700 evaluations of a shortened tape a face, O(n log n); `threads` 0: all. Error::Cancelled.
 Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& derivation, const Model& model,
                                                   const eval::Tape& tape, float cell_m, int threads, Progress* progress,
                                                   const std::vector<PartFace>* among = nullptr);

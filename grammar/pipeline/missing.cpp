@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "grammar/pipeline/buried.h"
@@ -13,7 +14,7 @@
 namespace sgm::pipeline {
 namespace {
 
-/// The parts of one line of a grammar, or the walls beside them.
+/// The parts of one line of a grammar, or the walls at their faces.
 struct Line {
     std::string symbol;
     size_t parts = 0;
@@ -59,14 +60,19 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
         return fmt::format("--resolution {}", static_cast<int>(std::ceil(extent_m / cell_m)));
     };
     std::vector<MeshWarning> warnings;
+    std::set<std::pair<std::string, uint32_t>> others;
     for (const auto& [place, line] : lines) {
-        if (warnings.size() == most) break;
-        const auto& [file, number, isBeside] = place;
+        const auto& [file, number, isWall] = place;
+        if (warnings.size() == most) {
+            others.emplace(file, number);
+            continue;
+        }
         const bool one = line.parts == 1;
-        const std::string count = one ? "a" : std::to_string(line.parts);
-        const std::string what = isBeside ? fmt::format("{} wall{} of {:.3g} m beside '{}'", count, one ? "" : "s",
-                                                        line.thickness_m, line.symbol)
-                                          : fmt::format("{} '{}' of {:.3g} m", count, line.symbol, line.thickness_m);
+        const std::string what =
+            isWall ? fmt::format("{} of {:.3g} m at {} of '{}'", one ? "a wall" : "walls", line.thickness_m,
+                                 one ? "a face" : fmt::format("{} faces", line.parts), line.symbol)
+                   : fmt::format("{} '{}' of {:.3g} m", one ? "a" : std::to_string(line.parts), line.symbol,
+                                 line.thickness_m);
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", file, number),
              fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}", what,
@@ -75,9 +81,9 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
                          one ? "it" : "them"),
              true});
     }
-    if (lines.size() > most)
+    if (!others.empty())
         warnings.push_back(
-            {{}, {}, fmt::format("parts of {} more lines are too thin for these cells", lines.size() - most), true});
+            {{}, {}, fmt::format("parts of {} more lines are too thin for these cells", others.size()), true});
     return warnings;
 }
 

@@ -1,4 +1,4 @@
-// Parts thinner than a cell, told of with the resolution that holds them.
+// Parts, and walls that cuts leave, thinner than a cell, told of with the resolution that holds them.
 // Enters: a model and its mesh. Leaves: sentences.
 #pragma once
 

@@ -63,8 +63,9 @@ private:
             int& tried = tried_[{part.part, part.face}];
             tried = std::max(tried + 1, lower::halvingsFor(part, grid_.cell_m));
             if (tried > most_) continue;
-            cellCount += lower::countCellsAround(part, grid_);
-            if (cellCount > cellsPerTriangle * static_cast<double>(mostTriangles_)) continue;
+            const double count = lower::countCellsAround(part, grid_);
+            if (cellCount + count > cellsPerTriangle * static_cast<double>(mostTriangles_)) continue;
+            cellCount += count;
             mesh::CellSet around;
             lower::addCellsAround(part, grid_, around);
             tried = std::max(tried, halvingsIn(around));

@@ -131,10 +131,10 @@ Status FineCells::add(std::span<const Vec3i> cells) {
 }
 
 /// Shortens the field to blocks that weren't asked for before.
-Status FineCells::findBlocks(const CellSet& places) {
+Status FineCells::findBlocks(const CellSet& indices) {
     CellSet missing;
-    for (const Vec3i place : places.list())
-        if (asked_.insert(place)) missing.insert(place);
+    for (const Vec3i index : indices.list())
+        if (asked_.insert(index)) missing.insert(index);
     if (missing.empty()) return Done{};
     const BlockFilter wanted(missing, fine_);
     const RegionFilter filter{[&](std::span<const Vec3i> indices, int size) { return wanted.skips(indices, size); },
@@ -152,11 +152,11 @@ Status FineCells::findBlocks(const CellSet& places) {
 /// The surface in parts of blocks, its vertices numbered from 0 on.
 Result<Chunk> FineCells::meshParts(const PartsOfBlocks& parts) {
     if (Status status = findBlocks(parts.blocks()); !status) return status.error();
-    std::vector<Block*> places;
+    std::vector<Block*> sources;
     std::vector<Block> blocks;
     for (Block& block : blocks_) {
         if (!parts.blocks().contains(block.index)) continue;
-        places.push_back(&block);
+        sources.push_back(&block);
         blocks.push_back(std::move(block));
         blocks.back().part = parts.of(blocks.back().index);
     }
@@ -164,7 +164,7 @@ Result<Chunk> FineCells::meshParts(const PartsOfBlocks& parts) {
     options.surface = Surface::Crisp, options.threads = threads_;
     Counts counts;
     auto chunks = meshBlocks(blocks, fine_, options, progress_, counts);
-    for (size_t b = 0; b < blocks.size(); ++b) *places[b] = std::move(blocks[b]);
+    for (size_t b = 0; b < blocks.size(); ++b) *sources[b] = std::move(blocks[b]);
     if (!chunks.ok()) return chunks.error();
     Numbering numbering;
     if (Status status = numbering.add(*chunks); !status) return status.error();
@@ -193,8 +193,9 @@ Status FineCells::append(Chunk added) {
         const Vec3f p = added.positions[v];
         if (isOnSide(p)) {
             const auto [at, isNew] = onSides_.try_emplace(p, count);
-            number[v] = at->second;
-            if (!isNew) continue;
+            const bool isShared = !isNew && at->second < before;  // two that are added stay two, wherever they are
+            number[v] = isShared ? at->second : count;
+            if (isShared) continue;
         } else {
             number[v] = count;
         }

@@ -28,14 +28,14 @@ public:
 
     /// Whether the surface in a cell is there.
     bool has(Vec3i cell) const { return meshed_.contains(cell); }
-    /// Meshes cells of the grid, and those across the sides of blocks. O(n) in what is new. Errors as of subdivide and
-    /// polygonize, and Error::Budget for 2³¹ vertices.
+    /// Meshes cells of the grid, and those across the sides of blocks. O(n) in what is new and in the blocks so far.
+    /// Errors as of subdivide and polygonize, and Error::Budget for 2³¹ vertices.
     Status add(std::span<const Vec3i> cells);
     /// The surface in them; it ends on their sides. What is new comes behind what was there.
     const Chunk& surface() const { return surface_; }
 
 private:
-    Status findBlocks(const CellSet& places);
+    Status findBlocks(const CellSet& indices);
     Result<Chunk> meshParts(const PartsOfBlocks& parts);
     Status append(Chunk added);
     bool isOnSide(Vec3f p) const;

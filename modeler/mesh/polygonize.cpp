@@ -36,7 +36,7 @@ uint64_t bytesOf(const Chunk& c) {
            (c.ghosts.vertices.size() + c.shared.vertices.size()) * sizeof(uint32_t);
 }
 
-/// The blocks' chunks, empty ones too; ticks for every block.
+/// The blocks' chunks without empty ones; ticks for every block.
 Result<std::vector<Chunk>> chunksOf(std::span<const Block> blocks, const Grid& grid, const PolygonizeOptions& options,
                                     Progress* progress, Counts& counts) {
     if (Status status = checkGrid(grid); !status) return status.error();

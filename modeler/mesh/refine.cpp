@@ -17,7 +17,7 @@ namespace {
 
 constexpr int mostFittings = 24;            ///< of the cells, which shrink each time
 constexpr size_t mostGrowth = 2;            ///< times the cells that were asked for there may come to be
-constexpr size_t marginShare = 4;           ///< as many cells more are meshed at once where they grow, of all
+constexpr size_t marginDivisor = 4;         ///< of the cells, for how many are meshed beyond where they grow
 constexpr size_t leastGrowth = 512;         ///< as many may always
 constexpr size_t trianglesAtOnce = 4096;    ///< of a parallel loop
 constexpr float sameNormal = 1.0f - 1e-5f;  ///< cosine between normals that needn't be told apart
@@ -300,7 +300,7 @@ private:
                 });
             }
             if (unmeshed.empty()) return tooMany;
-            if (Status s = meshFinely(withMargin(unmeshed, cells.size() / marginShare)); !s) return s.error();
+            if (Status s = meshFinely(withMargin(unmeshed, cells.size() / marginDivisor)); !s) return s.error();
             open.swap(unmeshed);
         }
     }

@@ -44,8 +44,8 @@ float cellFor(const Box3f& bounds, int resolution);
 
 /// Some of a block's cells. Blocks at a side have to have the same cells and bricks at it.
 struct PartOfBlock {
-    int cubeCells = brickCells;        ///< cells come in cubes with so many along an edge, a divisor of brickCells
-    uint64_t bricks = 0;               ///< those with such cubes, and the seven below each, by number
+    int cubeCells = brickCells;  ///< cells come in cubes with 2, 4 or 8 along an edge
+    uint64_t bricks = 0;         ///< those with such cubes, the seven below each, and those across sides; by number
     std::array<uint64_t, 64> cubes{};  ///< by brick: its cubes that get triangles, x first
 };
 

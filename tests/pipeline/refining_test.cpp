@@ -81,7 +81,7 @@ TEST(Refining, WallsThatCutsLeaveAreThere) {
     }
     const auto warnings = missingWarnings(model, coarse.grid, missing);
     ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_NE(warnings[0].text.find("walls of 0.1"), std::string::npos) << warnings[0].text;
+    EXPECT_NE(warnings[0].text.find("walls of 0.1 m at 6 faces of 'cube'"), std::string::npos) << warnings[0].text;
     EXPECT_TRUE(fine.missing->empty());
     EXPECT_NEAR(mesh::measure(fine.mesh).volume_m3, .6 * (64 - 5.53 * 6), .01);
     const auto word = mesh::validate(fine.mesh);
