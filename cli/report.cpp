@@ -80,15 +80,17 @@ Json floatingFigures(const Model& model, const Support& support) {
     return list;
 }
 
-/// The parts that are too thin for the cells, and the walls at faces of cuts, which the mesh lacks.
+/// The parts that are too thin for the cells, the walls at faces of cuts and the gaps at faces of parts, which the mesh
+/// lacks.
 Json missingFigures(const Model& model, const std::vector<lower::ThinPart>& missing) {
+    constexpr std::array kinds{"part", "wall", "gap"};
     Json list = Json::array();
     for (const lower::ThinPart& m : missing) {
         const Part& part = model.lowered->provenance.parts[m.part];
         list.push_back({{"path", part.path.text()},
                         {"file", part.file()},
                         {"line", part.line()},
-                        {"wall", m.face >= 0},
+                        {"kind", kinds[static_cast<size_t>(m.kind)]},
                         {"thickness_m", m.thickness_m},
                         {"cell_m", m.cell_m},
                         {"missing", m.missing}});

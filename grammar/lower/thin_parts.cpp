@@ -229,8 +229,8 @@ void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Pres
         [](Prober& prober, std::span<Candidate> some, size_t) { prober.probe(some); });
 }
 
-/// The wall at a section where the mesh has neither of its surfaces on more than a tenth of the lines.
-std::optional<ThinPart> lackedWall(const ThinSection& section, const Presence& presence, double cell_m) {
+/// The wall or gap at a section where the mesh has neither of its surfaces on more than a tenth of the lines.
+std::optional<ThinPart> lackedAt(const ThinSection& section, const Presence& presence, double cell_m) {
     if (section.lines.size() < fewestCrossings) return std::nullopt;
     const int axis = section.face / 2;
     const Mat3 local = section.scope.axes.transposed();
@@ -248,11 +248,11 @@ std::optional<ThinPart> lackedWall(const ThinSection& section, const Presence& p
     std::nth_element(thicknesses_m.begin(), middle, thicknesses_m.end());
     derive::Scope scope{section.scope.centre + section.scope.axes * box.centre(), section.scope.axes, box.size()};
     scope.size[(axis + 1) % 3] += section.spacing_m, scope.size[(axis + 2) % 3] += section.spacing_m;
-    return ThinPart{section.part, section.face, *middle, std::min(*middle * turnOf(scope, axis), cell_m / 2),
-                    missing,      scope};
+    return ThinPart{section.isGap ? ThinPart::Kind::Gap : ThinPart::Kind::Wall, section.part, section.face, *middle,
+                    std::min(*middle * turnOf(scope, axis), cell_m / 2),        missing,      scope};
 }
 
-/// Knows where the mesh has the parts, and the walls at the sections.
+/// Knows where the mesh has the parts, and what is at the sections.
 Presence presenceOf(const mesh::Mesh& mesh, std::span<const Candidate> thin, std::span<const ThinSection> sections,
                     size_t partCount, float cell_m) {
     std::vector<Presence::Extent> asked(partCount, Presence::Extent::Nothing);
@@ -289,10 +289,11 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
         if (!(c.missing > leastMissing)) continue;
         const bool wall = c.wall_m > 0;
         const double holding_m = wall ? c.wall_m / leaningWall : cellThatHolds(c.scope);
-        found.push_back({c.part, -1, wall ? c.wall_m : minComponent(c.scope.size), holding_m, c.missing, c.scope});
+        found.push_back({ThinPart::Kind::Part, c.part, -1, wall ? c.wall_m : minComponent(c.scope.size), holding_m,
+                         c.missing, c.scope});
     }
     for (const ThinSection& section : *sections)
-        if (const auto wall = lackedWall(section, presence, cell)) found.push_back(*wall);
+        if (const auto lacked = lackedAt(section, presence, cell)) found.push_back(*lacked);
     std::sort(found.begin(), found.end(), [](const ThinPart& a, const ThinPart& b) {
         return std::pair(a.part, a.face) < std::pair(b.part, b.face);
     });

@@ -10,11 +10,14 @@
 
 namespace sgm::lower {
 
-/// A part that is too thin for the cells, or a thin wall at a face of a cut: the mesh shows none of it in places.
+/// A part that is too thin for the cells, a thin wall at a face of a cut, or a narrow gap at a face of a part: the mesh
+/// shows none of it in places.
 struct ThinPart {
+    enum class Kind : uint8_t { Part, Wall, Gap };
+    Kind kind = Kind::Part;
     OriginId part = 0;       ///< or the cut
-    int face = -1;           ///< of the cut's scope: 2 · axis + (high side); −1 for a part
-    double thickness_m = 0;  ///< the least extent of the part's scope, or of its walls or shell; of the wall
+    int face = -1;           ///< of its scope, where the wall or gap is: 2 · axis + (high side); −1 for a part
+    double thickness_m = 0;  ///< the least extent of the part's scope, or of its walls or shell; of the wall or gap
     double cell_m = 0;       ///< cells no larger than this hold it
     /// Share of the part's surface without a triangle within half a cell, or of a plate's area; of lines across the
     /// wall with neither of its surfaces.
@@ -25,11 +28,11 @@ struct ThinPart {
 /// Looks at the parts whose scope is somewhere thinner than a cell, or whose walls or shell are (parapets, roofs that
 /// are open below): on lines through the scope along its thin axes, upright ones for walls, where does the field's
 /// surface belong to the part, and has the mesh a triangle of the part there? Of a plate that stands free, does the
-/// mesh cover its faces? Likewise at thin walls that cuts leave (`findThinSections`). Those that lack more than a
+/// mesh cover its faces? Likewise at thin walls and narrow gaps (`findThinSections`). Those that lack more than a
 /// tenth, ascending by part. What else is thin within a thicker scope, as a needle's point or a fractal's ornament,
 /// isn't looked for. Empty for a mesh without origins. Only those `among` others are looked at, where that isn't null.
-/// About 4,000 evaluations of a shortened tape a thin part, 33,000 at most for walls, 300 to 10,000 a cut, O(n log n);
-/// `threads` 0: all. Error::Cancelled.
+/// About 4,000 evaluations of a shortened tape a thin part, 33,000 at most for walls, 300 to 10,000 another, O(n log
+/// n); `threads` 0: all. Error::Cancelled.
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress,

@@ -13,9 +13,10 @@
 namespace sgm::lower {
 namespace {
 
-constexpr int fewestAlong = 5, mostAlong = 24;  ///< lines along an axis of a face
-constexpr size_t mostFollowed = 16;             ///< lines of a face that go into solid
+constexpr int fewestAlong = 5, mostAlong = 18;  ///< lines along an axis of a face
+constexpr size_t mostFollowed = 16;             ///< lines of a face that meet surface there
 constexpr int stepHalvings = 8;                 ///< of a step around a crossing
+constexpr std::array nearEnds{0.13, 0.3, 0.6};  ///< of a face, in cells
 // In cells, from a face outwards:
 constexpr double firstSample = -0.12, step = 0.25, farthest = 1.63;
 constexpr int samples = static_cast<int>((farthest - firstSample) / step) + 1;
@@ -25,6 +26,7 @@ struct FacedPart {
     OriginId part = 0;
     derive::Scope scope;
     uint32_t faces = 0;  ///< as a mask
+    bool cuts = false;   ///< from what stands, or is in what does
 };
 
 /// One worker's.
@@ -53,64 +55,71 @@ private:
 
     void probeFace(const FacedPart& part, int face, const eval::Tape& tape, std::vector<ThinSection>& found) {
         const Vec3d out = part.scope.axes * alongAxis(face / 2) * (face % 2 ? 1.0 : -1.0);
-        ThinSection section{part.part, face, part.scope, 0, {}};
+        ThinSection section{!part.cuts, part.part, face, part.scope, 0, {}};
         section.spacing_m = listLines(part.scope, face);
-        keepCrossing(out, tape);
+        keepCrossing(out, tape, part.cuts);
         if (lines_.empty()) return;
-        findNext(out, tape);
+        findNext(out, tape, part.cuts);
         if (lines_.empty()) return;
         findCrossings(out, tape, section);
         if (!section.lines.empty()) found.push_back(std::move(section));
     }
 
-    /// Lines through what of a face lies in the bounds, a cell apart where that is possible: of a cut that is larger
-    /// than what it cuts, few meet it. Returns how far apart they are.
+    /// Lines through what of a face lies in the bounds. Returns how far apart they are at most.
     double listLines(const derive::Scope& scope, int face) {
         const int axis = face / 2, across[] = {(axis + 1) % 3, (axis + 2) % 3};
-        std::array<double, 2> low{}, size{};  // metres from the scope's middle
-        std::array<int, 2> along{};
         const Vec3d middle = bounds_.centre().as<double>() - scope.centre, half = bounds_.size().as<double>() * 0.5;
+        double spacing_m = 0;
         lines_.clear();
         for (size_t k = 0; k < 2; ++k) {
             const Vec3d d = scope.axes * alongAxis(across[k]), a{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
             const double reach = scope.size[across[k]] * 0.5;
-            low[k] = std::max(-reach, dot(d, middle) - dot(a, half));
-            size[k] = std::min(reach, dot(d, middle) + dot(a, half)) - low[k];
-            if (!(size[k] > 0)) return 0;
-            along[k] =
-                static_cast<int>(std::clamp(std::ceil(size[k] / cell_m_), double{fewestAlong}, double{mostAlong}));
+            const double low = std::max(-reach, dot(d, middle) - dot(a, half));
+            const double high = std::min(reach, dot(d, middle) + dot(a, half));
+            if (!(low < high)) return 0;
+            spacing_m = std::max(spacing_m, listPlaces(low, high, places_[k]));
         }
         const Vec3d corner = scope.centre + scope.axes * (alongAxis(axis) * scope.size[axis] * (face % 2 ? 0.5 : -0.5));
-        for (int j = 0; j < along[1]; ++j)
-            for (int i = 0; i < along[0]; ++i) {
-                const Vec3d at = alongAxis(across[0]) * (low[0] + size[0] * evenShare(i, along[0])) +
-                                 alongAxis(across[1]) * (low[1] + size[1] * evenShare(j, along[1]));
-                lines_.push_back({corner + scope.axes * at});
-            }
-        return std::max(size[0] / along[0], size[1] / along[1]);
+        for (const double v : places_[1])
+            for (const double u : places_[0])
+                lines_.push_back({corner + scope.axes * (alongAxis(across[0]) * u + alongAxis(across[1]) * v)});
+        return spacing_m;
     }
 
-    /// Off the middle, so that no line lies in a plane of symmetry.
-    static double evenShare(int i, int n) { return (i + 0.535) / n; }
+    /// Places of lines along an axis: a cell apart where that is possible, for of a cut that is larger than what it
+    /// cuts few meet it; and some near the ends, for a part may show these alone. Returns how far apart they are at
+    /// most.
+    double listPlaces(double low, double high, std::vector<double>& places) const {
+        const double size = high - low;
+        const auto count =
+            static_cast<int>(std::clamp(std::ceil(size / cell_m_), double{fewestAlong}, double{mostAlong}));
+        places.clear();
+        for (int i = 0; i < count; ++i)  // off the middle, so that no line lies in a plane of symmetry
+            places.push_back(low + size * (i + 0.535) / count);
+        for (const double cells : nearEnds)
+            if (2 * cells * cell_m_ < size)
+                places.push_back(low + cells * cell_m_), places.push_back(high - cells * cell_m_);
+        return size / count;
+    }
 
     double at(int sample) const { return (firstSample + step * sample) * cell_m_; }
 
-    /// Keeps those lines that go into solid at the face.
-    void keepCrossing(Vec3d out, const eval::Tape& tape) {
+    /// Keeps those lines that go into solid, or out of it, at the face.
+    void keepCrossing(Vec3d out, const eval::Tape& tape, bool intoSolid) {
         points_.clear();
         for (const Line& line : lines_)
             for (const int sample : {0, 1}) points_.add((line.from + out * at(sample)).as<float>());
         evaluate(tape);
         size_t kept = 0;
         for (size_t i = 0; i < lines_.size(); ++i)
-            if (values_[2 * i] >= 0 && values_[2 * i + 1] < 0) lines_[kept++] = lines_[i];
+            if ((values_[2 * i] < 0) != intoSolid && (values_[2 * i + 1] < 0) == intoSolid) lines_[kept++] = lines_[i];
         const size_t stride = (kept + mostFollowed - 1) / mostFollowed;
         for (size_t i = 0; stride > 1 && i * stride < kept; ++i) lines_[i] = lines_[i * stride];
         lines_.resize(stride > 1 ? (kept + stride - 1) / stride : kept);
     }
 
-    /// Keeps those that leave it nearby, with the step where they do.
-    void findNext(Vec3d out, const eval::Tape& tape) {
+    /// Keeps those that do the contrary nearby, with the step where they do.
+    void findNext(Vec3d out, const eval::Tape& tape, bool intoSolid) {
         points_.clear();
         for (const Line& line : lines_)
             for (int sample = 1; sample < samples; ++sample) points_.add((line.from + out * at(sample)).as<float>());
@@ -119,7 +128,7 @@ private:
         for (size_t i = 0; i < lines_.size(); ++i) {
             const float* const values = values_.data() + i * (samples - 1);
             for (int sample = 1; sample + 1 < samples; ++sample) {
-                if (values[sample] < 0) continue;
+                if ((values[sample] < 0) == intoSolid) continue;
                 lines_[kept] = lines_[i];
                 lines_[kept++].next_m = at(sample);
                 break;
@@ -161,6 +170,7 @@ private:
     LocalTapes tapes_;
     Box3f bounds_;
     double cell_m_;
+    std::array<std::vector<double>, 2> places_;
     std::vector<Line> lines_;
     PointList points_;
     std::vector<float> values_;
@@ -186,8 +196,7 @@ std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Mo
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         const derive::ShapeId shape = model.shapeOf[part];
         if (faces[part] == 0 || shape == derive::none || derivation.tree.shapes[shape].solid == derive::none) continue;
-        if (!cuts[shape]) continue;
-        all.push_back({part, derive::liftedScope(derivation, shape), faces[part]});
+        all.push_back({part, derive::liftedScope(derivation, shape), faces[part], cuts[shape]});
     }
     orderByPlace(
         std::span(all), [](const FacedPart& c) { return c.scope.centre; }, [](const FacedPart& c) { return c.part; });
@@ -202,7 +211,7 @@ Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& deri
     const std::vector<FacedPart> parts = facedParts(derivation, model, among);
     std::vector<std::vector<ThinSection>> found((parts.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes);
     probeInGroups(
-        std::span(parts), threads, progress, "thin walls",
+        std::span(parts), threads, progress, "thin walls and gaps",
         [&] { return SectionProber(tape, model.field.bounds, cell_m); },
         [&](SectionProber& prober, std::span<const FacedPart> some, size_t group) {
             prober.probe(some, found[group]);

@@ -11,18 +11,19 @@
 
 namespace sgm::lower {
 
-/// A face of a cut beside which the solid is thin.
+/// A face of a cut beside which the solid is thin, or of another part beside which the air is.
 struct ThinSection {
     /// A point of the surface, and whose it is.
     struct Crossing {
         Vec3f at;
         OriginId owner = 0;
     };
-    /// Across the wall, from the face's own surface to the next one.
+    /// Across the wall or gap, from the face's own surface to the next one.
     struct Line {
         std::array<Crossing, 2> ends;
         double thickness_m = 0;
     };
+    bool isGap = false;
     OriginId part = 0;
     int face = 0;          ///< of its scope: 2 · axis + (high side)
     derive::Scope scope;   ///< of the part
@@ -36,9 +37,9 @@ struct PartFace {
     int face = 0;
 };
 
-/// Looks beyond the faces of parts that are cut from others, on lines a cell of `cell_m` metres apart (at most 576 a
-/// face, of which 16 are followed), for surface that is less than one and a half cells away. A round cut has surface at
-/// its faces' middles alone. Of all these parts, or of some faces where `among` isn't null. In order of part and face.
+/// Looks beyond the faces of parts, on lines a cell of `cell_m` metres apart (at most 576 a
+/// face, of which 16 are followed), for surface that is less than one and a half cells away. A round part has surface
+/// at its faces' middles alone. Of all parts, or of some faces where `among` isn't null. In order of part and face.
 /// 50 to 1,700 evaluations of a shortened tape a face, O(n log n); `threads` 0: all. Error::Cancelled.
 Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& derivation, const Model& model,
                                                   const eval::Tape& tape, float cell_m, int threads, Progress* progress,

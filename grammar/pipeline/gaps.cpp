@@ -137,7 +137,7 @@ public:
     ThinLinks(const Model& model, const std::vector<lower::ThinPart>& missing)
         : model_(model), shapes_(model.derivation.tree.shapes), isMissing_(shapes_.size(), false) {
         for (const lower::ThinPart& part : missing)
-            if (part.face < 0) missing_.push_back(part);
+            if (part.kind == lower::ThinPart::Kind::Part) missing_.push_back(part);
         for (size_t i = 0; i < missing_.size(); ++i)
             if (shapeOf(i) != derive::none) isMissing_[shapeOf(i)] = true;
     }

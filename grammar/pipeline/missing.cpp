@@ -14,7 +14,7 @@
 namespace sgm::pipeline {
 namespace {
 
-/// The parts of one line of a grammar, or the walls at their faces.
+/// The parts of one line of a grammar, or the walls or gaps at their faces.
 struct Line {
     std::string symbol;
     size_t parts = 0;
@@ -41,10 +41,10 @@ Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const 
 std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
                                          const std::vector<lower::ThinPart>& missing, const std::string& object) {
     constexpr size_t most = 5;
-    std::map<std::tuple<std::string, uint32_t, bool>, Line> lines;
+    std::map<std::tuple<std::string, uint32_t, lower::ThinPart::Kind>, Line> lines;
     for (const lower::ThinPart& m : missing) {
         const Part& part = model.lowered->provenance.parts[m.part];
-        Line& line = lines[{part.file(), part.line(), m.face >= 0}];
+        Line& line = lines[{part.file(), part.line(), m.kind}];
         if (line.parts++ == 0) {
             const derive::ShapeId shape = model.lowered->shapeOf[m.part];
             line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, {}};
@@ -62,17 +62,19 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
     std::vector<MeshWarning> warnings;
     std::set<std::pair<std::string, uint32_t>> others;
     for (const auto& [place, line] : lines) {
-        const auto& [file, number, isWall] = place;
+        const auto& [file, number, kind] = place;
         if (warnings.size() == most) {
             others.emplace(file, number);
             continue;
         }
         const bool one = line.parts == 1;
         const std::string what =
-            isWall ? fmt::format("{} of {:.3g} m at {} of '{}'", one ? "a wall" : "walls", line.thickness_m,
-                                 one ? "a face" : fmt::format("{} faces", line.parts), line.symbol)
-                   : fmt::format("{} '{}' of {:.3g} m", one ? "a" : std::to_string(line.parts), line.symbol,
-                                 line.thickness_m);
+            kind == lower::ThinPart::Kind::Part
+                ? fmt::format("{} '{}' of {:.3g} m", one ? "a" : std::to_string(line.parts), line.symbol,
+                              line.thickness_m)
+                : fmt::format("{}{}{} of {:.3g} m at {} of '{}'", one ? "a " : "",
+                              kind == lower::ThinPart::Kind::Wall ? "wall" : "gap", one ? "" : "s", line.thickness_m,
+                              one ? "a face" : fmt::format("{} faces", line.parts), line.symbol);
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", file, number),
              fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}", what,

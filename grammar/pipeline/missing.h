@@ -1,4 +1,4 @@
-// Parts, and walls that cuts leave, thinner than a cell, told of with the resolution that holds them.
+// Parts, walls and gaps thinner than a cell, told of with the resolution that holds them.
 // Enters: a model and its mesh. Leaves: sentences.
 #pragma once
 

@@ -76,7 +76,7 @@ TEST(Refining, WallsThatCutsLeaveAreThere) {
     const auto missing = missingParts(model, coarse);
     ASSERT_FALSE(missing.empty());
     for (const lower::ThinPart& m : missing) {
-        EXPECT_GE(m.face, 0);
+        EXPECT_EQ(m.kind, lower::ThinPart::Kind::Wall);
         EXPECT_NEAR(m.thickness_m, .1, .02);
     }
     const auto warnings = missingWarnings(model, coarse.grid, missing);
@@ -86,6 +86,23 @@ TEST(Refining, WallsThatCutsLeaveAreThere) {
     EXPECT_NEAR(mesh::measure(fine.mesh).volume_m3, .6 * (64 - 5.53 * 6), .01);
     const auto word = mesh::validate(fine.mesh);
     EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects);
+}
+
+/// Pillars of a metre with a handbreadth between them.
+TEST(Refining, NarrowGapsBetweenPartsAreThere) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\n"
+        "start A -> cube size (8m, 1m, 3m) + Pillars size (6.03m, 6m, 1m) at +y\n"
+        "rule Pillars -> split x { .7m: cube | .1m: nil | .87m: cube | .1m: nil | .93m: cube | .1m: nil | .61m: cube | "
+        ".1m: nil | .79m: cube | .1m: nil | ~1: cube }\n",
+        context);
+    const MeshedModel coarse = meshed(model, 32, 0), fine = meshed(model, 32, 3);
+    const auto missing = missingParts(model, coarse);
+    ASSERT_FALSE(missing.empty());
+    for (const lower::ThinPart& m : missing) EXPECT_EQ(m.kind, lower::ThinPart::Kind::Gap);
+    EXPECT_TRUE(fine.missing->empty());
+    EXPECT_NEAR(mesh::measure(fine.mesh).volume_m3, 24 + 5.53 * 6, .01);
 }
 
 TEST(Refining, WhatIsTooThinEvenForHalvedCellsIsNamed) {
