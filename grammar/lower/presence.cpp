@@ -1,5 +1,6 @@
 #include "grammar/lower/presence.h"
 
+#include <array>
 #include <cmath>
 
 #include "grammar/lower/scope_lines.h"
@@ -16,10 +17,13 @@ Presence::Presence(const mesh::Mesh& mesh, std::span<const Extent> asked, std::s
                      static_cast<int>(std::floor(at.z))};
     };
     NumberSet around;
+    std::array<uint64_t, 8> last{};  // points that follow each other are often in one cell
     for (const Vec3f& p : points)
-        for (int corner = 0; corner < 8; ++corner) {
+        for (size_t corner = 0; corner < last.size(); ++corner) {
             const Vec3f sign{corner & 1 ? 1.0f : -1.0f, corner & 2 ? 1.0f : -1.0f, corner & 4 ? 1.0f : -1.0f};
-            around.insert(keyOf(largeCell(p + sign * cell_m), any));
+            const uint64_t key = keyOf(largeCell(p + sign * cell_m), any);
+            if (key != last[corner]) around.insert(key);
+            last[corner] = key;
         }
     std::vector<const Vec3f*> positions;
     positions.reserve(mesh.vertexCount());

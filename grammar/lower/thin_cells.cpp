@@ -27,22 +27,7 @@ struct CellsOfBox {
     }
 };
 
-}  // namespace
-
-int halvingsFor(const ThinPart& part, float cell_m) {
-    int halvings = 0;
-    while (std::ldexp(static_cast<double>(cell_m), -halvings) > part.cell_m) ++halvings;
-    return halvings;
-}
-
-double countCellsAround(const ThinPart& part, const mesh::Grid& grid) {
-    const CellsOfBox cells(part.scope, grid);
-    const Vec3d along = (cells.last - cells.first + Vec3i{1, 1, 1}).as<double>();
-    return along.x * along.y * along.z;
-}
-
-void addCellsAround(const ThinPart& part, const mesh::Grid& grid, mesh::CellSet& cells) {
-    const derive::Scope& scope = part.scope;
+void addCellsAround(const derive::Scope& scope, const mesh::Grid& grid, mesh::CellSet& cells) {
     const double cell = static_cast<double>(grid.cell_m), reach_m = around * cell;
     const CellsOfBox box(scope, grid);
     const Vec3d origin = grid.origin.as<double>(), half = scope.half();
@@ -55,6 +40,28 @@ void addCellsAround(const ThinPart& part, const mesh::Grid& grid, mesh::CellSet&
                 const Vec3d beyond = max(Vec3d{std::abs(p.x), std::abs(p.y), std::abs(p.z)} - half, Vec3d{});
                 if (dot(beyond, beyond) <= reach_m * reach_m) cells.insert({x, y, z});
             }
+}
+
+}  // namespace
+
+int halvingsFor(const ThinPart& part, float cell_m) {
+    int halvings = 0;
+    while (std::ldexp(static_cast<double>(cell_m), -halvings) > part.cell_m) ++halvings;
+    return halvings;
+}
+
+double countCellsAround(const ThinPart& part, const mesh::Grid& grid) {
+    double count = 0;
+    for (const derive::Scope& place : part.places) {
+        const CellsOfBox cells(place, grid);
+        const Vec3d along = (cells.last - cells.first + Vec3i{1, 1, 1}).as<double>();
+        count += along.x * along.y * along.z;
+    }
+    return count;
+}
+
+void addCellsAround(const ThinPart& part, const mesh::Grid& grid, mesh::CellSet& cells) {
+    for (const derive::Scope& place : part.places) addCellsAround(place, grid, cells);
 }
 
 }  // namespace sgm::lower

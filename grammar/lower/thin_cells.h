@@ -13,8 +13,8 @@ int halvingsFor(const ThinPart& part, float cell_m);
 /// As many cells as addCellsAround looks at.
 double countCellsAround(const ThinPart& part, const mesh::Grid& grid);
 
-/// Adds the cells of `grid` whose middles lie within one and a half cells of where a part is. O(cells of the box around
-/// it).
+/// Adds the cells of `grid` whose middles lie within one and a half cells of where a part is missing. O(cells of the
+/// box around it).
 void addCellsAround(const ThinPart& part, const mesh::Grid& grid, mesh::CellSet& cells);
 
 }  // namespace sgm::lower

@@ -22,7 +22,7 @@ struct ThinPart {
     /// Share of the part's surface without a triangle within half a cell, or of a plate's area; of lines across the
     /// wall with neither of its surfaces.
     double missing = 0;
-    derive::Scope scope;  ///< where it is
+    std::vector<derive::Scope> places;  ///< where it is
 };
 
 /// Looks at the parts whose scope is somewhere thinner than a cell, or whose walls or shell are (parapets, roofs that

@@ -13,10 +13,11 @@
 namespace sgm::lower {
 namespace {
 
-constexpr int fewestAlong = 5, mostAlong = 18;  ///< lines along an axis of a face
-constexpr size_t mostFollowed = 16;             ///< lines of a face that meet surface there
+constexpr int fewestAlong = 3, mostAlong = 18;  ///< lines along an axis of a face
+constexpr size_t mostFollowed = 24;             ///< lines of a face that meet surface there
 constexpr int stepHalvings = 8;                 ///< of a step around a crossing
 constexpr std::array nearEnds{0.13, 0.3, 0.6};  ///< of a face, in cells
+constexpr double sizesToEnd = 8;  ///< a face has so many of these at least, where they are places of lines
 // In cells, from a face outwards:
 constexpr double firstSample = -0.12, step = 0.25, farthest = 1.63;
 constexpr int samples = static_cast<int>((farthest - firstSample) / step) + 1;
@@ -97,7 +98,7 @@ private:
         for (int i = 0; i < count; ++i)  // off the middle, so that no line lies in a plane of symmetry
             places.push_back(low + size * (i + 0.535) / count);
         for (const double cells : nearEnds)
-            if (2 * cells * cell_m_ < size)
+            if (sizesToEnd * cells * cell_m_ < size)
                 places.push_back(low + cells * cell_m_), places.push_back(high - cells * cell_m_);
         return size / count;
     }
@@ -155,10 +156,11 @@ private:
                 brackets[i][(atStart[i] < 0) == (values_[i] < 0) ? 0 : 1] = (brackets[i][0] + brackets[i][1]) * 0.5;
         }
         const std::vector<OriginId>& owners = owners_.at(points_, tape, tapes_.workspace());
+        const double thinnest_m = cell_m_ / turnOf(section.scope, section.face / 2);  // that cells hold for certain
         for (size_t i = 0; i + 1 < points_.size(); i += 2) {
-            if (owners[i] != section.part || owners[i + 1] == 0) continue;
-            section.lines.push_back(
-                {{{{points_[i], owners[i]}, {points_[i + 1], owners[i + 1]}}}, brackets[i + 1][0] - brackets[i][0]});
+            const double thickness_m = brackets[i + 1][0] - brackets[i][0];
+            if (thickness_m >= thinnest_m || owners[i] != section.part || owners[i + 1] == 0) continue;
+            section.lines.push_back({{{{points_[i], owners[i]}, {points_[i + 1], owners[i + 1]}}}, thickness_m});
         }
     }
 
