@@ -17,7 +17,7 @@ constexpr int fewestAlong = 3, mostAlong = 18;  ///< lines along an axis of a fa
 constexpr size_t mostFollowed = 24;             ///< lines of a face that meet surface there
 constexpr int stepHalvings = 8;                 ///< of a step around a crossing
 constexpr std::array nearEnds{0.13, 0.3, 0.6};  ///< of a face, in cells
-constexpr double sizesToEnd = 8;  ///< a face has so many of these at least, where they are places of lines
+constexpr double sizesToEnd = 8;                ///< a face is so many times as long at least as what is near its end
 // In cells, from a face outwards:
 constexpr double firstSample = -0.12, step = 0.25, farthest = 1.63;
 constexpr int samples = static_cast<int>((farthest - firstSample) / step) + 1;
@@ -198,6 +198,7 @@ std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Mo
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         const derive::ShapeId shape = model.shapeOf[part];
         if (faces[part] == 0 || shape == derive::none || derivation.tree.shapes[shape].solid == derive::none) continue;
+        if (!model.provenance.parts[part].hasFlatFaces) continue;
         all.push_back({part, derive::liftedScope(derivation, shape), faces[part], cuts[shape]});
     }
     orderByPlace(
