@@ -123,7 +123,7 @@ void orderByPlace(std::span<Item> items, CentreOf centreOf, NumberOf numberOf) {
     orderByPlace(items.subspan(items.size() / 2), centreOf, numberOf);
 }
 
-/// Calls probe(prober, items, number of the first) for groups of at most LocalTapes::mostBoxes items that follow each
+/// Calls probe(prober, items, number of the group) for groups of at most LocalTapes::mostBoxes items that follow each
 /// other, on `threads` threads (0: all), each with a prober that `make` makes; ticks for every item.
 template <class Item, class Make, class Probe>
 void probeInGroups(std::span<Item> items, int threads, Progress* progress, const char* stage, Make make, Probe probe) {

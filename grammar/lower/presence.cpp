@@ -7,21 +7,17 @@
 
 namespace sgm::lower {
 
-Presence::Presence(const mesh::Mesh& mesh, std::span<const Extent> asked, std::span<const Vec3f> points, float cell_m)
+Presence::Presence(const mesh::Mesh& mesh, std::span<const Extent> extents, std::span<const Vec3f> points, float cell_m)
     : perMetre_(4 / cell_m) {
     constexpr OriginId any = 0;
     const float perMetre = 0.5f / cell_m;  // of cells of twice the edge: the eight around a point reach a cell far
-    const auto largeCell = [&](Vec3f p) {
-        const Vec3f at = p * perMetre;
-        return Vec3i{static_cast<int>(std::floor(at.x)), static_cast<int>(std::floor(at.y)),
-                     static_cast<int>(std::floor(at.z))};
-    };
+    const auto keyAt = [&](Vec3f p) { return keyOf(cellOf(p, perMetre), any); };
     NumberSet around;
     std::array<uint64_t, 8> last{};  // points that follow each other are often in one cell
     for (const Vec3f& p : points)
         for (size_t corner = 0; corner < last.size(); ++corner) {
             const Vec3f sign{corner & 1 ? 1.0f : -1.0f, corner & 2 ? 1.0f : -1.0f, corner & 4 ? 1.0f : -1.0f};
-            const uint64_t key = keyOf(largeCell(p + sign * cell_m), any);
+            const uint64_t key = keyAt(p + sign * cell_m);
             if (key != last[corner]) around.insert(key);
             last[corner] = key;
         }
@@ -31,10 +27,10 @@ Presence::Presence(const mesh::Mesh& mesh, std::span<const Extent> asked, std::s
         for (const Vec3f& p : c.positions) positions.push_back(&p);
     for (const mesh::Chunk& c : mesh.chunks)
         for (size_t t = 0; t < c.origins.size(); ++t) {
-            if (asked[c.origins[t]] == Extent::Nothing) continue;
+            if (extents[c.origins[t]] == Extent::Nothing) continue;
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
             const Vec3f p = *positions[corners[0]], q = *positions[corners[1]], r = *positions[corners[2]];
-            if (asked[c.origins[t]] == Extent::All || around.contains(keyOf(largeCell((p + q + r) * (1.0f / 3)), any)))
+            if (extents[c.origins[t]] == Extent::All || around.contains(keyAt((p + q + r) * (1.0f / 3))))
                 addTriangle(p, q, r, c.origins[t]);
         }
 }
@@ -44,14 +40,14 @@ void Presence::addTriangle(Vec3f p, Vec3f q, Vec3f r, OriginId part) {
     for (int u = 0; u <= parts; ++u)
         for (int v = 0; u + v <= parts; ++v) {
             const Vec3f at = p + (q - p) * (static_cast<float>(u) / parts) + (r - p) * (static_cast<float>(v) / parts);
-            const uint64_t key = keyOf(cellOf(at), part);
+            const uint64_t key = keyOf(cellOf(at, perMetre_), part);
             if (key != last_) cells_.insert(key);
             last_ = key;
         }
 }
 
 bool Presence::isNear(Vec3f p, OriginId part) const {
-    const Vec3i cell = cellOf(p);
+    const Vec3i cell = cellOf(p, perMetre_);
     if (cells_.contains(keyOf(cell, part))) return true;
     for (int z = -1; z <= 1; ++z)
         for (int y = -1; y <= 1; ++y)
@@ -70,8 +66,8 @@ bool Presence::isWhole(const derive::Scope& scope, OriginId part, double cell_m)
     });
 }
 
-Vec3i Presence::cellOf(Vec3f p) const {
-    const auto floor = [&](float c) { return static_cast<int>(std::floor(c * perMetre_)); };
+Vec3i Presence::cellOf(Vec3f p, float perMetre) {
+    const auto floor = [&](float c) { return static_cast<int>(std::floor(c * perMetre)); };
     return {floor(p.x), floor(p.y), floor(p.z)};
 }
 

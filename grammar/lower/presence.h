@@ -20,7 +20,7 @@ public:
     enum class Extent : uint8_t { Nothing, NearPoints, All };
     /// O(triangles of those parts + points). Of parts that are asked about near points only the triangles within a cell
     /// of one of `points` count. Cells in metres.
-    Presence(const mesh::Mesh& mesh, std::span<const Extent> asked, std::span<const Vec3f> points, float cell_m);
+    Presence(const mesh::Mesh& mesh, std::span<const Extent> extents, std::span<const Vec3f> points, float cell_m);
     /// Whether a triangle of the part lies within a quarter of a cell to a half.
     bool isNear(Vec3f p, OriginId part) const;
     /// Whether triangles of the part lie along every line through its scope, which is thinner than a cell of `cell_m`
@@ -29,7 +29,7 @@ public:
 
 private:
     void addTriangle(Vec3f p, Vec3f q, Vec3f r, OriginId part);
-    Vec3i cellOf(Vec3f p) const;
+    static Vec3i cellOf(Vec3f p, float perMetre);
     static uint64_t keyOf(Vec3i cell, OriginId part);
 
     const float perMetre_;

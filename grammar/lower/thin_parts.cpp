@@ -92,22 +92,22 @@ private:
         findCrossings(candidate, tape);
         if (inside_.empty()) return 0;
         const std::vector<OriginId>& owners = owners_.at(middles_, tape, tapes_.workspace());
-        int met = 0, lacks = 0;
+        size_t met = 0, lacks = 0;
         for (size_t i = 0; i < owners.size(); ++i) {
             if (owners[i] != part) continue;
-            ++met, lacks += !presence_.isNear(middles_[i], part);
+            ++met, lacks += presence_.isNear(middles_[i], part) ? 0 : 1;
         }
-        if (met < static_cast<int>(fewestCrossings)) return 0;
-        return std::max(static_cast<double>(lacks) / met, missingOfPlate(candidate, met));
+        if (met < fewestCrossings) return 0;
+        return std::max(static_cast<double>(lacks) / static_cast<double>(met), missingOfPlate(candidate, met));
     }
 
     /// What the mesh lacks of a plate that stands free, by area: of a turned one it may show posts, which lie so near
     /// to each other that there are triangles everywhere. 0 for other parts.
-    double missingOfPlate(const Candidate& candidate, int met) const {
+    double missingOfPlate(const Candidate& candidate, size_t met) const {
         if (candidate.plateAxis < 0) return 0;
         int lines = 0;
         eachLine(candidate.scope, cell_m_, [&](Vec3d, int) { return ++lines, true; });
-        const double free = met / (2.0 * lines);
+        const double free = static_cast<double>(met) / (2.0 * lines);
         const double lacks = 1 - candidate.facing_m2 / (free * facesOf(candidate.scope, candidate.plateAxis));
         return free < mostlyFree || lacks < leastMissingArea ? 0 : lacks;
     }
@@ -177,29 +177,16 @@ double wallOf(const derive::SolidValue& solid) {
     return least;
 }
 
-/// Which parts and faces are looked at.
-struct PartFilter {
-    std::optional<std::vector<bool>> parts;  ///< by part; all where there is none
-    std::optional<std::vector<PartFace>> faces;
-
-    PartFilter(const std::vector<ThinPart>* among, size_t count) {
-        if (!among) return;
-        parts.emplace(count);
-        faces.emplace();
-        for (const ThinPart& t : *among)
-            if (t.face < 0)
-                (*parts)[t.part] = true;
-            else
-                faces->push_back({t.part, t.face});
-    }
-};
-
 /// The parts that may lack something, where they stand on hills.
 std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Model& model, double cell,
-                                 const std::optional<std::vector<bool>>& among) {
+                                 const std::vector<ThinPart>* among) {
+    std::vector<bool> isWanted(model.shapeOf.size(), !among);
+    if (among)
+        for (const ThinPart& part : *among)
+            if (part.kind == ThinPart::Kind::Part) isWanted[part.part] = true;
     std::vector<Candidate> thin;
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
-        if (model.shapeOf[part] == derive::none || (among && !(*among)[part])) continue;
+        if (model.shapeOf[part] == derive::none || !isWanted[part]) continue;
         const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
         if (shape.solid == derive::none) continue;
         const bool isFlat = cellThatHolds(shape.scope) < cell;
@@ -211,7 +198,7 @@ std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Mod
     return thin;
 }
 
-/// Asks of each part whether it is there; those that are whole, as far as the mesh tells, go.
+/// Measures what the mesh lacks of each part; leaves out those that it shows whole.
 void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Presence& presence, float cell_m,
                 int threads, Progress* progress) {
     parallelFor(thin.size(), threads, nullptr, [&](size_t i, int) {
@@ -285,16 +272,16 @@ std::optional<ThinPart> lackedAt(const ThinSection& section, const Presence& pre
 /// Knows where the mesh has the parts, and what is at the sections.
 Presence presenceOf(const mesh::Mesh& mesh, std::span<const Candidate> thin, std::span<const ThinSection> sections,
                     size_t partCount, float cell_m) {
-    std::vector<Presence::Extent> asked(partCount, Presence::Extent::Nothing);
+    std::vector<Presence::Extent> extents(partCount, Presence::Extent::Nothing);
     std::vector<Vec3f> points;
     for (const ThinSection& section : sections)
         for (const ThinSection::Line& line : section.lines)
             for (const ThinSection::Crossing& end : line.ends) {
-                asked[end.owner] = Presence::Extent::NearPoints;
+                extents[end.owner] = Presence::Extent::NearPoints;
                 points.push_back(end.at);
             }
-    for (const Candidate& c : thin) asked[c.part] = Presence::Extent::All;
-    return Presence(mesh, asked, points, cell_m);
+    for (const Candidate& c : thin) extents[c.part] = Presence::Extent::All;
+    return Presence(mesh, extents, points, cell_m);
 }
 
 }  // namespace
@@ -304,10 +291,8 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
                                                int threads, Progress* progress, const std::vector<ThinPart>* among) {
     if (mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     const auto cell = static_cast<double>(cell_m);
-    const PartFilter filter(among, model.shapeOf.size());
-    std::vector<Candidate> thin = thinParts(derivation, model, cell, filter.parts);
-    const auto sections =
-        findThinSections(derivation, model, tape, cell_m, threads, progress, filter.faces ? &*filter.faces : nullptr);
+    std::vector<Candidate> thin = thinParts(derivation, model, cell, among);
+    const auto sections = findThinSections(derivation, model, tape, cell_m, threads, progress, among);
     if (!sections.ok()) return sections.error();
     if (thin.empty() && sections->empty()) return std::vector<ThinPart>{};
     const Presence presence = presenceOf(mesh, thin, *sections, model.shapeOf.size(), cell_m);

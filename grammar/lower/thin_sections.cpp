@@ -17,7 +17,7 @@ constexpr int fewestAlong = 3, mostAlong = 18;  ///< lines along an axis of a fa
 constexpr size_t mostFollowed = 24;             ///< lines of a face that meet surface there
 constexpr int stepHalvings = 8;                 ///< of a step around a crossing
 constexpr std::array nearEnds{0.13, 0.3, 0.6};  ///< of a face, in cells
-constexpr double sizesToEnd = 8;                ///< a face is so many times as long at least as what is near its end
+constexpr double nearEndShare = 0.125;          ///< of a face, at most
 // In cells, from a face outwards:
 constexpr double firstSample = -0.12, step = 0.25, farthest = 1.63;
 constexpr int samples = static_cast<int>((farthest - firstSample) / step) + 1;
@@ -40,7 +40,7 @@ public:
     void probe(std::span<const FacedPart> parts, std::vector<ThinSection>& found) {
         std::vector<Box3f> boxes;
         for (const FacedPart& c : parts)
-            boxes.push_back(derive::boxOf(c.scope).inflated(farthest * cell_m_).template as<float>());
+            boxes.push_back(derive::boxOf(c.scope).inflated(farthest * cell_m_).as<float>());
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) {
             for (int face = 0; face < 6; ++face)
                 if (parts[i].faces >> face & 1) probeFace(parts[i], face, tape, found);
@@ -98,7 +98,7 @@ private:
         for (int i = 0; i < count; ++i)  // off the middle, so that no line lies in a plane of symmetry
             places.push_back(low + size * (i + 0.535) / count);
         for (const double cells : nearEnds)
-            if (sizesToEnd * cells * cell_m_ < size)
+            if (cells * cell_m_ < nearEndShare * size)
                 places.push_back(low + cells * cell_m_), places.push_back(high - cells * cell_m_);
         return size / count;
     }
@@ -138,7 +138,7 @@ private:
         lines_.resize(kept);
     }
 
-    /// Halves the steps until both surfaces are known, and asks whose they are.
+    /// Halves the steps around both surfaces, and finds the owners of these.
     void findCrossings(Vec3d out, const eval::Tape& tape, ThinSection& section) {
         const auto point = [&](size_t i, double along) { return (lines_[i / 2].from + out * along).as<float>(); };
         std::vector<std::array<double, 2>> brackets;
@@ -189,10 +189,11 @@ std::vector<bool> cutShapes(const derive::Shapes& shapes) {
 }
 
 std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Model& model,
-                                  const std::vector<PartFace>* among) {
+                                  const std::vector<ThinPart>* among) {
     std::vector<uint32_t> faces(model.shapeOf.size(), among ? 0u : 63u);
     if (among)
-        for (const PartFace& face : *among) faces[face.part] |= 1u << face.face;
+        for (const ThinPart& thin : *among)
+            if (thin.face >= 0) faces[thin.part] |= 1u << thin.face;
     const std::vector<bool> cuts = cutShapes(derivation.tree.shapes);
     std::vector<FacedPart> all;
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
@@ -210,7 +211,7 @@ std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Mo
 
 Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& derivation, const Model& model,
                                                   const eval::Tape& tape, float cell_m, int threads, Progress* progress,
-                                                  const std::vector<PartFace>* among) {
+                                                  const std::vector<ThinPart>* among) {
     const std::vector<FacedPart> parts = facedParts(derivation, model, among);
     std::vector<std::vector<ThinSection>> found((parts.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes);
     probeInGroups(

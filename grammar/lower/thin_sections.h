@@ -1,11 +1,11 @@
-// Walls that stand between two cuts, or gaps between two parts, thinner than a mesh's cells: thick parts can leave
-// them. Enters: a derivation and its model. Leaves: where they are. Assumes nothing of a mesh.
+// Walls between two cuts, and gaps between two parts, that are thinner than a mesh's cells though no part is.
+// Enters: a derivation and its model. Leaves: where they are. Assumes nothing of a mesh.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "grammar/lower/lower.h"
+#include "grammar/lower/thin_parts.h"
 #include "modeler/core/progress.h"
 #include "modeler/eval/tape.h"
 
@@ -31,18 +31,12 @@ struct ThinSection {
     std::vector<Line> lines;
 };
 
-/// A face of a part's scope.
-struct PartFace {
-    OriginId part = 0;
-    int face = 0;
-};
-
 /// Looks beyond the faces of parts that have flat ones, on lines a cell of `cell_m` metres apart (at most 576 a face,
-/// of which 24 are followed), for surface that is less than one and a half cells away. Of all these parts, or of some
-/// faces where `among` isn't null. In order of part and face. 20 to 2,000 evaluations of a shortened tape a face, O(n
-/// log n); `threads` 0: all. Error::Cancelled.
+/// of which 24 are followed), for surface that is less than one and a half cells away. Of all these parts, or of the
+/// faces `among` thin parts where that isn't null. In order of part and face. 20 to 2,000 evaluations of a shortened
+/// tape a face, O(n log n); `threads` 0: all. Error::Cancelled.
 Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& derivation, const Model& model,
                                                   const eval::Tape& tape, float cell_m, int threads, Progress* progress,
-                                                  const std::vector<PartFace>* among = nullptr);
+                                                  const std::vector<ThinPart>* among = nullptr);
 
 }  // namespace sgm::lower

@@ -80,6 +80,7 @@ void visitAround(Vec3i cell, Visit&& visit) {
 /// Those of the components of `cells` to which none of `others` belongs or is next, edges and corners included. O(n).
 CellSet componentsWithout(const CellSet& cells, const CellSet& others);
 
+/// Whether the grid has the cell.
 inline bool isInGrid(const Grid& grid, Vec3i cell) {
     return minComponent(cell) >= 0 && minComponent(grid.cells - cell) > 0;
 }

@@ -80,10 +80,7 @@ size_t keepPart(const PartOfBlock& part, Vec3i brick, std::span<SurfaceCell> cel
     const int along = brickCells / part.cubeCells;
     size_t kept = 0;
     for (const SurfaceCell& cell : cells) {
-        const int corner = cell.corner;
-        const Vec3i at =
-            Vec3i{corner % blockCorners, corner / blockCorners % blockCorners, corner / (blockCorners * blockCorners)} -
-            brick * brickCells;
+        const Vec3i at = cornerIndices(cell.corner) - brick * brickCells;
         const Vec3i cube{at.x / part.cubeCells, at.y / part.cubeCells, at.z / part.cubeCells};
         if (cubes >> (cube.x + along * (cube.y + along * cube.z)) & 1) cells[kept++] = cell;
     }

@@ -8,9 +8,6 @@ namespace sgm::mesh {
 namespace {
 
 constexpr int edgePlace(Vec3i corner, int axis) { return 3 * cornerNumber(corner.x, corner.y, corner.z) + axis; }
-constexpr Vec3i cornerAt(int number) {
-    return {number % blockCorners, number / blockCorners % blockCorners, number / (blockCorners * blockCorners)};
-}
 constexpr Vec3i offset(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2}; }
 constexpr Vec3i unit(int axis) { return {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0}; }
 
@@ -71,7 +68,7 @@ uint64_t CrispBlock::joinFaces(eval::Workspace& workspace) {
     std::vector<std::pair<size_t, uint32_t>> asked;  // mixed cell and face, number
     for (size_t m = 0; m < mixed_.size(); ++m) {
         const SurfaceCell& cell = surface_->cells[mixed_[m].cell];
-        const Vec3i low = cornerAt(cell.corner);
+        const Vec3i low = cornerIndices(cell.corner);
         for (int face = 0; face < 6; ++face) {
             const int axis = face / 2;
             if (!isAmbiguous(cell.inside, axis, face % 2)) continue;
@@ -109,7 +106,7 @@ uint64_t CrispBlock::joinFaces(eval::Workspace& workspace) {
 
 /// The segment of a side of a loop whose ends have different labels, and whether the loop runs along it backward.
 int32_t CrispBlock::segmentOf(const SurfaceCell& cell, const CellLoop& loop, int side) {
-    const Vec3i low = cornerAt(cell.corner);
+    const Vec3i low = cornerIndices(cell.corner);
     const int edges[] = {loop.edges[static_cast<size_t>(side)],
                          loop.edges[static_cast<size_t>((side + 1) % loop.size)]};
     const uint32_t place[] = {vertexAt(low, edges[0]), vertexAt(low, edges[1])};
@@ -235,7 +232,7 @@ void CrispBlock::numberBreaks() {
 /// A loop with the breaks on its sides.
 void CrispBlock::addNodes(const SurfaceCell& cell, const CellLoop& loop, size_t& side) {
     nodes_.clear();
-    const Vec3i low = cornerAt(cell.corner);
+    const Vec3i low = cornerIndices(cell.corner);
     for (int i = 0; i < loop.size; ++i, ++side) {
         const int edge = loop.edges[static_cast<size_t>(i)];
         const uint32_t vertex = surface_->number[edgePlace(low + offset(edgeCorner(edge)), edgeAxis(edge))];
@@ -270,7 +267,7 @@ void CrispBlock::splitCells() {
         const CellLoops& loops = loopsOfCell(mixed);
         for (int l = 0; l < loops.count; ++l) {
             addNodes(cell, loops.loops[l], side);
-            pieces_.addLoop(first_ + cornerAt(cell.corner), brickOf(cornerAt(cell.corner)), nodes_);
+            pieces_.addLoop(first_ + cornerIndices(cell.corner), brickOf(cornerIndices(cell.corner)), nodes_);
         }
         pieces_.endCell();
     }

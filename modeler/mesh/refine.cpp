@@ -261,7 +261,7 @@ private:
         for (const Vec3i cell : cells) all.insert(cell);
         const size_t asked = all.size();
         for (size_t next = 0; next < all.size() && (next < asked || all.size() < asked + margin); ++next)
-            visitSides(Vec3i(all.list()[next]), [&](const CellSide& side) {
+            visitSides(Vec3i(all.list()[next]), [&](const CellSide& side) {  // a copy, for the list grows
                 const Vec3i beyond = side.beyond();
                 if (!isInGrid(grid_, beyond) || mesher_.has(beyond)) return;
                 if (next < asked || !coarseCells_.isEmpty(beyond)) all.insert(beyond);

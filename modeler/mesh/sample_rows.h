@@ -17,6 +17,9 @@ inline constexpr int brickCorners = brickCells + 1;
 /// Corners of a block, and their numbers, x fastest.
 inline constexpr int cornersPerBlock = blockCorners * blockCorners * blockCorners;
 constexpr int cornerNumber(int i, int j, int k) { return i + blockCorners * (j + blockCorners * k); }
+constexpr Vec3i cornerIndices(int number) {
+    return {number % blockCorners, number / blockCorners % blockCorners, number / (blockCorners * blockCorners)};
+}
 
 /// A brick's number in its block, its coordinates there and its low corner's number.
 constexpr int brickNumber(Vec3i at) { return at.x + bricksAlong * (at.y + bricksAlong * at.z); }

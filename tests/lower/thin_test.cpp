@@ -77,7 +77,7 @@ TEST(ThinSections, AreTheWallsThatCutsLeave) {
             EXPECT_NE(line.ends[1].owner, section.part);
         }
     }
-    const std::vector<lower::PartFace> none;
+    const std::vector<lower::ThinPart> none;
     EXPECT_TRUE(lower::findThinSections(model.derivation, *model.model, model.tape(), .2f, 2, nullptr, &none)->empty());
     EXPECT_TRUE(lower::findThinSections(model.derivation, *model.model, model.tape(), .05f, 2, nullptr)->empty());
     Progress progress;
