@@ -37,12 +37,12 @@ Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath)
                                       {hashText("rotation.yx"), hashText("rotation.yy"), hashText("rotation.yz")},
                                       {hashText("rotation.zx"), hashText("rotation.zy"), hashText("rotation.zz")}};
     constexpr std::array centreNames{hashText("centre.x"), hashText("centre.y"), hashText("centre.z")};
+    // Shapes of equal axes share these slots, whoever is first or again: a zero has one sign.
+    const auto entry = [&](uint64_t name, double value) { return named(g, rotationPath, name, value + 0.0); };
     const auto along = [&](const Vec3d& column, const uint64_t* name) {
         for (int axis = 0; axis < 3; ++axis)
             if (std::abs(column[axis]) == 1) return column[axis] > 0 ? component(p, axis) : -component(p, axis);
-        return dot(Point{named(g, rotationPath, name[0], column.x), named(g, rotationPath, name[1], column.y),
-                         named(g, rotationPath, name[2], column.z)},
-                   p);
+        return dot(Point{entry(name[0], column.x), entry(name[1], column.y), entry(name[2], column.z)}, p);
     };
     const Vec3f c = centre.as<float>();
     const auto [x, y, z] = g.slots(path, centreNames, std::array{c.x, c.y, c.z});

@@ -59,7 +59,7 @@ for target in "$@"; do
     lower) by_number lower lower 'Fuzz.Mutants*' 4000 ;;
     models) by_number models pipeline 'RandomModels.*' 200 ;;
     edits) by_number edits document 'RandomEdits.KeepText*' 1000 ;;
-    incremental) by_number incremental pipeline 'Mixed.*' 100 ;;
+    incremental) by_number incremental pipeline 'RandomDrags.*' 300 ;;
     *) echo "no fuzz target is called '$target'" >&2; exit 2 ;;
   esac
 done
