@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Fuzzes.  tests/fuzz/run.sh [TIME] [TARGET…]   (10m each, all targets; TIME in seconds, or as 90s, 10m, 2h)
 #   mesh maps syntax grammar          libFuzzer under AddressSanitizer and UndefinedBehaviorSanitizer, by clang++
+#   mesh_by_number maps_by_number syntax_by_number    the same targets in the Release build, inputs by number: many times as fast
 #   format check lower models edits incremental    inputs by number, through the tests of the Release build
-# Both go on where the last run ended: corpora stay in build/fuzz/corpus, and tests/fuzz/tally.txt holds how many inputs each
+# All go on where the last run ended: corpora stay in build/fuzz/corpus, and tests/fuzz/tally.txt holds how many inputs each
 # target has had. An input that crashes, hangs or takes more than 2 GB ends the run with an error.
 cd "$(dirname "$0")/../.."
 set -eu
@@ -13,7 +14,7 @@ case "$time" in
   *m) seconds=$((${time%m} * 60)) ;;
   *) seconds="${time%s}" ;;
 esac
-[ $# -gt 0 ] || set -- mesh maps syntax grammar format check lower models edits incremental
+[ $# -gt 0 ] || set -- mesh maps syntax grammar mesh_by_number maps_by_number syntax_by_number format check lower models edits incremental
 tally=tests/fuzz/tally.txt
 
 had() { sed -n "s/^$1 //p" "$tally"; }
@@ -37,6 +38,18 @@ coverage_guided() {  # TARGET LONGEST SEEDS…
   count "$target" "$(sed -n 's/^stat::number_of_executed_units: *//p' "build/fuzz/$target.log")"
 }
 
+uninstrumented() {  # TARGET INPUTS-A-ROUND SEEDS…
+  target="$1" inputs="$2"
+  shift 2
+  ninja -C build/release "fuzz_$target" >build/fuzz.log
+  end=$(($(date +%s) + seconds)) done=0
+  while [ "$(date +%s)" -lt "$end" ]; do
+    "build/release/tests/fuzz/fuzz_$target" $(($(had "$target") + done)) "$inputs" "$@"
+    done=$((done + inputs))
+  done
+  count "$target" "$done"
+}
+
 by_number() {  # TARGET MODULE TEST INPUTS-A-ROUND
   ninja -C build/release "test_$2" >build/fuzz.log
   end=$(($(date +%s) + seconds)) done=0
@@ -54,6 +67,9 @@ for target in "$@"; do
     maps) coverage_guided maps 2000 tests/fuzz/maps ;;
     syntax) coverage_guided syntax 1500 tests/bad tests/syntax grammar/std examples ;;
     grammar) coverage_guided grammar 3000 tests/bad tests/syntax grammar/std examples ;;
+    mesh_by_number) uninstrumented mesh_by_number 100000 tests/fuzz/mesh ;;
+    maps_by_number) uninstrumented maps_by_number 400000 tests/fuzz/maps ;;
+    syntax_by_number) uninstrumented syntax_by_number 100000 tests/bad tests/syntax examples ;;
     format) by_number format syntax 'Fuzz.Mutants*' 20000 ;;
     check) by_number check rules 'Fuzz.Mutants*' 6000 ;;
     lower) by_number lower lower 'Fuzz.Mutants*' 4000 ;;
