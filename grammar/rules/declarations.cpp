@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "grammar/rules/bodies.h"
 #include "grammar/rules/declarations.h"
@@ -11,6 +12,7 @@
 #include "grammar/rules/make.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/words.h"
+#include "grammar/syntax/lexer.h"
 
 namespace sgm::rules {
 namespace {
@@ -223,7 +225,28 @@ void checkDeclarations(CheckContext& ctx, const syntax::Ast& ast) {
     }
 }
 
+namespace {
+
+/// Terminals and materials of the file whose name no other place of any file has.
+void warnOfUnusedLooks(CheckContext& ctx, const syntax::Ast& ast) {
+    std::map<std::string_view, size_t> places;  // how often a name stands somewhere
+    for (const syntax::TerminalDecl& decl : ast.terminals)
+        for (const syntax::Name& name : decl.names) places.emplace(name.text, 0);
+    if (places.empty()) return;
+    for (const syntax::SourcePtr& source : ctx.grammar.sources)
+        for (const syntax::Token& token : syntax::lexSignificant(*source))
+            if (const auto found = places.find(syntax::textOf(*source, token)); found != places.end()) ++found->second;
+    for (const syntax::TerminalDecl& decl : ast.terminals)
+        for (const syntax::Name& name : decl.names)
+            if (places.at(name.text) == 1)
+                ctx.diagnostics.warning(name.span, fmt::format("nothing uses the {} '{}'",
+                                                               decl.isMaterial ? "material" : "terminal", name.text));
+}
+
+}  // namespace
+
 void warnOfUnused(CheckContext& ctx, const syntax::Ast& ast) {
+    warnOfUnusedLooks(ctx, ast);
     for (const auto& decl : ast.params)
         if (const auto param = ctx.names.params.find(decl.name.text);
             param != ctx.names.params.end() && !ctx.params.used.contains(param->second))

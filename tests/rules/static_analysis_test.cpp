@@ -110,6 +110,14 @@ TEST(Unused, ParametersAreWarnedOf) {
     EXPECT_EQ(c.messages(), "warning: nothing uses the parameter 'a'\n");
 }
 
+TEST(Unused, TerminalsAndMaterialsAreWarnedOf) {
+    const Checked c = checkedBody(
+        "material stone color #888888\nmaterial slate color #444444\nterminal pane, door color #aabbcc\n"
+        "terminal slab = cube of stone\n// door\nstart S -> slab + pane at +y\n");
+    EXPECT_TRUE(c.grammar);
+    EXPECT_EQ(c.messages(), "warning: nothing uses the material 'slate'\nwarning: nothing uses the terminal 'door'\n");
+}
+
 TEST(Live, NamesNearARulesAreWarnedOf) {
     EXPECT_EQ(checkedBody("start S -> cube : Cel\nrule Cell -> sphere\n").messages(),
               "warning: no rule matches 'Cel', so nothing will grow here\nwarning: this rule never runs: no start "
