@@ -40,27 +40,41 @@ void common(const Intervals& a, const Intervals& b, Intervals& both) {
     }
 }
 
-/// The largest rectangle whose sides across x lie at two of `at` (ascending).
-std::optional<Box2> largest(const std::vector<PlacedEdge>& edges, const std::vector<double>& at) {
+double areaOf(const Box2& box) { return box.size().x * box.size().z; }
+
+/// The largest rectangle whose sides across x lie at two of `at` (ascending); `known` is about as large as one of them,
+/// and what can't reach it isn't looked at.
+std::optional<Box2> largest(const std::vector<PlacedEdge>& edges, const std::vector<double>& at,
+                            const std::optional<Box2>& known = {}) {
     std::vector<Intervals> strips;
-    for (size_t i = 0; i + 1 < at.size(); ++i) strips.push_back(insideStrip(edges, at[i], at[i + 1]));
+    std::vector<double> tallest;
+    for (size_t i = 0; i + 1 < at.size(); ++i) {
+        strips.push_back(insideStrip(edges, at[i], at[i + 1]));
+        tallest.push_back(0);
+        for (const Interval& z : strips.back()) tallest.back() = std::max(tallest.back(), z.hi - z.lo);
+    }
     std::optional<Box2> best;
-    double most = 0;
+    double most = known ? (1 - 1e-9) * areaOf(*known) : 0;
+    // Past the last strip as far as which one that begins with strip i may be larger.
+    const auto endFor = [&](size_t i) {
+        size_t end = strips.size();
+        while (end > i && std::min(tallest[i], tallest[end - 1]) * (at[end] - at[i]) <= most) --end;
+        return end;
+    };
     Intervals open, both;
     for (size_t i = 0; i < strips.size(); ++i) {
-        open = strips[i];
-        bool mayGrow = true;  // what is open, as wide as the whole, would be larger
-        for (size_t j = i; j < strips.size() && mayGrow; ++j) {
-            if (j > i) common(open, strips[j], both), std::swap(open, both);
-            mayGrow = false;
-            for (const Interval& z : open) {
+        const size_t end = endFor(i);
+        for (size_t j = i; j < end && (j == i || !open.empty()); ++j) {
+            if (j == i)
+                open = strips[i];
+            else
+                common(open, strips[j], both), std::swap(open, both);
+            for (const Interval& z : open)
                 if (const double size = (z.hi - z.lo) * (at[j + 1] - at[i]); size > most)
                     most = size, best = Box2{{at[i], z.lo}, {at[j + 1], z.hi}};
-                mayGrow = mayGrow || (z.hi - z.lo) * (at.back() - at[i]) > most;
-            }
         }
     }
-    return best;
+    return best ? best : known;
 }
 
 }  // namespace
@@ -76,20 +90,26 @@ std::optional<Box2> innerRectangle(const Footprint& footprint) {
     const bool isRectilinear = std::all_of(edges.begin(), edges.end(), [](const PlacedEdge& e) {
         return std::abs(e.to.x - e.from.x) < 1e-9 || std::abs(e.to.z - e.from.z) < 1e-9;
     });
-    for (int i = 1; i < parts && !isRectilinear; ++i) at.push_back(box.lo.x + step * i);
     const auto ordered = [](std::vector<double>& list) {
         std::sort(list.begin(), list.end());
         list.erase(std::unique(list.begin(), list.end(), [](double a, double b) { return b - a < 1e-9; }), list.end());
     };
     ordered(at);
-    std::optional<Box2> best = largest(edges, at);
-    if (!best || isRectilinear) return best;
+    if (isRectilinear) return largest(edges, at);
+    // A few sides first: what they find leaves little to look at among many.
+    std::optional<Box2> best;
+    for (const int apart : {8, 1}) {
+        for (int i = apart; i < parts; i += apart) at.push_back(box.lo.x + step * i);
+        ordered(at);
+        best = largest(edges, at, best);
+    }
+    if (!best) return best;
     // Once more, finely about the sides found.
     for (int i = -finer; i <= finer; ++i)
         for (const double side : {best->lo.x, best->hi.x})
             at.push_back(std::clamp(side + step * i / finer, box.lo.x, box.hi.x));
     ordered(at);
-    return largest(edges, at);
+    return largest(edges, at, best);
 }
 
 }  // namespace sgm::plan
