@@ -50,8 +50,22 @@ TEST_F(Parts, ACoatThinnerThanAProbeOwnsItsSurface) {
     const auto probe = [](float x, float from, float to) { return PreparedField::Probe{{x, from, .5f}, {x, to, .5f}}; };
     EXPECT_EQ(
         prepared->originsOf({probe(.5f, 1.003f, .993f), probe(2.5f, 1.003f, .993f), probe(.5f, 1.0015f, .9915f)}, 2),
-        (std::vector<OriginId>{2, 1, 1}))
+        (std::vector<OriginId>{2, 1, 2}))
         << "on the coat, beside it, and from within it";
+}
+
+/// Where the two touch the field is 0 again: a probe that ends there, or a little above or below, met the upper one.
+TEST_F(Parts, ASlabOwnsItsSurfaceWhereAProbeEndsAtItsFoot) {
+    Scene scene;
+    scene.add("cube", {0, 0, 0}, {3, 1, 3}, {1, 1, 1});
+    scene.add("cube", {0, 1.0625, 0}, {2, .0625, 2}, {1, 0, 0});
+    const field::Field field = scene.sum();
+    const auto prepared = prepareField(scene.compile(field), field.bounds, scene.provenance, 2, nullptr);
+    ASSERT_TRUE(prepared.ok());
+    std::vector<PreparedField::Probe> probes;
+    for (const float foot : {1.0f, .999f, 1.001f, .95f, 1.05f})
+        for (const float slant : {0.0f, .5f, 1.5f}) probes.push_back({{.5f, 1.14f, 0}, {.5f + slant, foot, 0}});
+    EXPECT_EQ(prepared->originsOf(probes, 1), std::vector<OriginId>(probes.size(), 2));
 }
 
 TEST_F(Parts, CellsKnowTheFieldExactly) {

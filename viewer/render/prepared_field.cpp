@@ -29,6 +29,48 @@ float PreparedField::sideOf(Vec3f eye) const {
     return value < 0 ? -1.0f : 1.0f;
 }
 
+namespace {
+
+/// Owners of what a tape's probes meet. Where solids touch, the field within their sum is 0 again, so that the values
+/// at both ends of a probe don't tell where it meets the first of them: a step as long as the value at its beginning
+/// leads there, or near it, and two more look behind.
+std::vector<OriginId> ownersAt(const eval::Tape& tape, const std::vector<PreparedField::Probe>& probes,
+                               eval::Workspace& workspace) {
+    constexpr float behind = 0.05f;  // of a probe
+    constexpr size_t looks = 3;
+    const size_t n = probes.size();
+    std::vector<float> x(looks * n), y(looks * n), z(looks * n), values(looks * n), first(n), begin(n);
+    const auto put = [&](size_t row, size_t k, float share) {
+        const Vec3f p = probes[k].from + (probes[k].to - probes[k].from) * share;
+        x[row * n + k] = p.x, y[row * n + k] = p.y, z[row * n + k] = p.z;
+    };
+    for (size_t k = 0; k < n; ++k) put(0, k, 0);
+    eval::evaluate(tape, {x.data(), y.data(), z.data(), n}, begin.data(), workspace);
+    for (size_t k = 0; k < n; ++k) {
+        const float step = begin[k] / (std::max(tape.lipschitz(), 1e-6f) * length(probes[k].to - probes[k].from));
+        first[k] = std::min(std::max(step, 0.0f) + behind, 1.0f);
+        put(0, k, first[k]), put(1, k, (first[k] + 1) / 2), put(2, k, 1);
+    }
+    eval::evaluate(tape, {x.data(), y.data(), z.data(), looks * n}, values.data(), workspace);
+    for (size_t k = 0; k < n; ++k) {
+        const float at[looks] = {first[k], (first[k] + 1) / 2, 1};
+        size_t inside = 0;
+        while (inside < looks && !(values[inside * n + k] < 0)) ++inside;
+        if (inside == 0 || inside == looks) {
+            put(0, k, at[std::min(inside, looks - 1)]);
+            continue;
+        }
+        const float before = values[(inside - 1) * n + k], after = values[inside * n + k];
+        const float met = at[inside - 1] + (at[inside] - at[inside - 1]) * (before / (before - after));
+        put(0, k, std::min(met + behind, 1.0f));
+    }
+    std::vector<OriginId> origins(n);
+    eval::evaluateOrigin(tape, {x.data(), y.data(), z.data(), n}, origins.data(), workspace);
+    return origins;
+}
+
+}  // namespace
+
 /// Places are gathered by cell and asked on the cell's own tape.
 std::vector<OriginId> PreparedField::originsOf(const std::vector<Probe>& probes, int threads) const {
     const auto whole =
@@ -52,21 +94,11 @@ std::vector<OriginId> PreparedField::originsOf(const std::vector<Probe>& probes,
     std::vector<eval::Workspace> workspaces(std::min(size_t(threadCount(threads)), groups / fewGroups + 1));
     const auto askGroup = [&](size_t g, eval::Workspace& workspace) {
         const size_t n = starts[g + 1] - starts[g];
-        std::vector<float> x(2 * n), y(2 * n), z(2 * n), values(2 * n);  // ends, then beginnings
-        const auto put = [&](size_t k, Vec3f p) { x[k] = p.x, y[k] = p.y, z[k] = p.z; };
-        const auto probeOf = [&](size_t k) -> const Probe& { return probes[members[starts[g] + k].place]; };
-        for (size_t k = 0; k < n; ++k) put(k, probeOf(k).to), put(n + k, probeOf(k).from);
         const uint32_t number = members[starts[g]].tape;
-        const eval::Tape& own = number < whole ? tree.tapes[number] : tape;
-        eval::evaluate(own, {x.data(), y.data(), z.data(), 2 * n}, values.data(), workspace);
-        for (size_t k = 0; k < n; ++k) {
-            const float from = values[n + k], to = values[k];
-            if ((from < 0) == (to < 0)) continue;
-            put(k, probeOf(k).from + (probeOf(k).to - probeOf(k).from) * std::min(from / (from - to) + 0.05f, 1.0f));
-        }
-        std::vector<OriginId> origins(n);
-        eval::evaluateOrigin(own, {x.data(), y.data(), z.data(), n}, origins.data(), workspace);
-        for (size_t k = 0; k < origins.size(); ++k)
+        std::vector<Probe> own(n);
+        for (size_t k = 0; k < n; ++k) own[k] = probes[members[starts[g] + k].place];
+        const std::vector<OriginId> origins = ownersAt(number < whole ? tree.tapes[number] : tape, own, workspace);
+        for (size_t k = 0; k < n; ++k)
             all[members[starts[g] + k].place] = origins[k] < materialOf.size() ? origins[k] : 0;
     };
     parallelFor((groups + fewGroups - 1) / fewGroups, static_cast<int>(workspaces.size()), nullptr,
