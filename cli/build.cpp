@@ -192,8 +192,7 @@ void addBuild(CLI::App& app, int& exitCode) {
                       "Print lines `progress: STAGE PERCENT` on the standard error, for other programs");
     command->footer(
         "Examples:\n  sgm build examples/grotto.sgm -o grotto.glb -o grotto.vdb --resolution 256\n"
-        "  sgm build examples/cumulus.sgm -o cumulus.vdb --format-option grids=fog --format-option wisps=.6 --proxy "
-        "shadow.glb\n"
+        "  sgm build examples/cumulus.sgm -o cumulus.vdb --format-option grids=fog --format-option wisps=.6\n"
         "  sgm build examples/tower.sgm --set floors=12 --seed 7 -o tower.obj --report tower.json\n"
         "  sgm build examples/tower.sgm --objects Storey,Roof -o tower.glb -o tower.usda\n"
         "  sgm build examples/tower.sgm --animate peak=0..1:48 -o roof_%04d.glb\n"

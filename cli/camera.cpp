@@ -34,7 +34,7 @@ Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipe
     return c;
 }
 
-void warnOfEye(const pipeline::Model& model, const render::Camera& camera) {
+void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool isInside) {
     if (model.lowered->field.bounds.empty()) return;
     const Vec3f eye = camera.eye.as<float>();
     float value = 0;
@@ -43,10 +43,13 @@ void warnOfEye(const pipeline::Model& model, const render::Camera& camera) {
     if (!(value < 0)) return;
     // The field bounds the distance only where it doesn't jump.
     const float depth_m = -value / std::max(1.f, model.lowered->field.lipschitz);
+    const char* const wayOut = isInside ? "the model has no hollow to stand in: leave --camera inside out"
+                                        : "move it, or write --camera inside";
     printMessage(
         "warning: the eye stands {}within the solid at ({:g}, {:g}, {:g}), from where walls are seen from within: "
-        "move it, or write --camera inside\n",
-        depth_m > 0 ? fmt::format("at least {:.3g} m ", depth_m) : "", camera.eye.x, camera.eye.y, camera.eye.z);
+        "{}\n",
+        depth_m > 0 ? fmt::format("at least {:.3g} m ", depth_m) : "", camera.eye.x, camera.eye.y, camera.eye.z,
+        wayOut);
 }
 
 }  // namespace sgm::cli

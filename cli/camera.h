@@ -16,6 +16,6 @@ Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipe
 
 /// Tells on stderr when the eye stands within the model's solid, from where walls are seen from their inner sides. Of
 /// objects that are kept apart nothing is known.
-void warnOfEye(const pipeline::Model& model, const render::Camera& camera);
+void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool isInside);
 
 }  // namespace sgm::cli

@@ -24,7 +24,9 @@ Result<exporter::ExportOptions> fogOptions(const std::vector<std::string>& words
         options[name] = text.substr(equals + 1);
     }
     if (options.empty()) return options;
-    if (const Status s = exporter::checkOptions(*exporter::findExporter(".vdb"), options); !s.ok()) return s.error();
+    exporter::ExportOptions ofFile = options;
+    ofFile["grids"] = "fog";
+    if (const Status s = exporter::checkOptions(*exporter::findExporter(".vdb"), ofFile); !s.ok()) return s.error();
     return options;
 }
 

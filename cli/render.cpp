@@ -100,8 +100,11 @@ Status checkRequest(const RenderRequest& request) {
     if (const auto fog = fogOptions(request.fog.options); !fog.ok()) return fog.error();
     if (request.print.stats && (request.view != "field" || request.turntable > 0))
         return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
-    if (request.turntable == 0) return Done{};
     const auto name = frameName(request.output, 0, "--turntable");
+    if (request.turntable == 0 && name.ok())
+        return wrong(fmt::format("-o {}: the name numbers pictures: add --turntable COUNT, or write a name without '%'",
+                                 request.output));
+    if (request.turntable == 0) return Done{};
     return name.ok() ? Status(Done{}) : Status(name.error());
 }
 
@@ -261,7 +264,7 @@ Status drawAll(const RenderRequest& request) {
     const auto camera = cameraFor(request.camera, request.turntable > 0, *model, bounds,
                                   static_cast<double>(options->width) / options->height);
     if (!camera.ok()) return camera.error();
-    if (!request.print.quiet && request.view != "fog") warnOfEye(*model, *camera);
+    if (!request.print.quiet && request.view != "fog") warnOfEye(*model, *camera, request.camera == "inside");
     options->camera = *camera;
     options->samples = request.samples;
     options->threads = request.grid.threads;

@@ -41,9 +41,18 @@ void addModelOptions(CLI::App& command, ModelRequest& request) {
         ->capture_default_str();
 }
 
+namespace {
+
+/// A number of metres, or of a unit behind it.
+CLI::AsNumberWithUnit metres() {
+    return CLI::AsNumberWithUnit(std::map<std::string, double>{{"mm", .001}, {"cm", .01}, {"m", 1}});
+}
+
+}  // namespace
+
 void addSectionOption(CLI::App& command, ModelRequest& request) {
     command.add_option("--section", request.section,
-                       "Cut the model open, as x=1.5, y=2m or z=50% of it: what lies beyond is left out, and the cut "
+                       "Cut the model open, as x=1.5, y=20cm or z=50% of it: what lies beyond is left out, and the cut "
                        "shows each part in its own material; --section=-x=1.5 leaves out what lies before");
 }
 
@@ -51,7 +60,8 @@ void addGridOptions(CLI::App& command, GridRequest& request) {
     auto* resolution =
         command.add_option("--resolution", request.resolution, "Cells along the longest side of the bounds");
     resolution->check(wholeNumber(2, 8192))->capture_default_str();
-    command.add_option("--cell", request.cell_m, "Edge of a cell in metres")
+    command.add_option("--cell", request.cell_m, "Edge of a cell: .1, 10cm, 5mm")
+        ->transform(metres())
         ->check(between(1e-6, 1e6))
         ->excludes(resolution);
     command
@@ -93,7 +103,7 @@ void addEditOptions(CLI::App& command, MeshEdits& edits) {
     command
         .add_option("--tolerance", edits.tolerance_m,
                     "How far simplification may move the surface: 5mm, 2cm, .01m; 0 keeps all [a crisp mesh: .01 cell]")
-        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"mm", .001}, {"cm", .01}, {"m", 1}}))
+        ->transform(metres())
         ->check(between(0, 1e6))
         ->excludes(share);
 }

@@ -1,4 +1,6 @@
 // Putting shapes: where a newcomer stands (SG-M III-F) and what it is bonded to.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -187,6 +189,12 @@ bool Interpreter::placeGrown(const Element& e, Frame& frame, const Target& targe
     std::vector<ShapeId> hosts;  // those that stand now: what grows on them may carry the name too
     for (ShapeId s = frame.state->root; s != none; s = tree.next(s, frame.state->root))
         if (tree.shapes[s].symbol == symbol) hosts.push_back(s);
+    select(builder_, e.on->span, !hosts.empty(), [&] {
+        const std::string& name = builder_.derivation().grammar->symbols[symbol].name;
+        return Explanation{fmt::format("no '{}' stands there yet, so this grows nowhere", name),
+                           fmt::format("let a rule of its own wait for all of them, as 'when count({}) > 1'", name),
+                           symbol};
+    });
     for (const ShapeId host : hosts)
         if (!placeOn(host, e, frame, target, combine(key, tree.shapes[host].key))) return false;
     return true;

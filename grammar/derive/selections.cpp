@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "grammar/derive/shape_tree.h"
 #include "grammar/rules/words.h"
 #include "modeler/core/random.h"
 #include "modeler/plan/edge_words.h"
@@ -63,10 +64,16 @@ void Selections::add(const Selections& other) {
     }
 }
 
-syntax::Diagnostics Selections::warnings() const {
+syntax::Diagnostics Selections::warnings(const ShapeTree* tree) const {
+    const auto holds = [&](uint32_t symbol) {
+        if (symbol == rules::none) return true;
+        for (ShapeId s = tree && !tree->shapes.empty() ? 0 : none; s != none; s = tree->next(s))
+            if (tree->shapes[s].symbol == symbol) return true;
+        return false;
+    };
     syntax::Diagnostics warnings;
     for (const Selection& s : all_)
-        if (!s.found) warnings.warning(s.at, s.otherwise.message, s.otherwise.hint);
+        if (!s.found && holds(s.otherwise.symbol)) warnings.warning(s.at, s.otherwise.message, s.otherwise.hint);
     return warnings;
 }
 

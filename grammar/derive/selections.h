@@ -7,14 +7,18 @@
 #include <unordered_map>
 #include <vector>
 
+#include "grammar/rules/grammar.h"
 #include "grammar/syntax/source.h"
 #include "modeler/plan/polygon.h"
 
 namespace sgm::derive {
 
+struct ShapeTree;
+
 /// What a warning says, and what to do.
 struct Explanation {
     std::string message, hint;
+    uint32_t symbol = rules::none;  ///< it holds only where a shape of this symbol stands in the end
 };
 
 /// Says that no edge of the plan is called `word`, and what comes of that; with the nearest of the words that there
@@ -37,8 +41,9 @@ public:
     bool knows(syntax::SourceSpan at) const { return indexOf_.contains(keyOf(at)); }
     /// Takes over what another derivation of the same grammar noted: a place that picked something in one of them has.
     void add(const Selections& other);
-    /// A warning for every place that never picked anything, in the order in which they were first met.
-    syntax::Diagnostics warnings() const;
+    /// A warning for every place that never picked anything, in the order in which they were first met. What holds for
+    /// shapes of a symbol alone is told where `tree` has one.
+    syntax::Diagnostics warnings(const ShapeTree* tree = nullptr) const;
 
 private:
     struct Selection {

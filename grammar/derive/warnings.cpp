@@ -3,14 +3,42 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "grammar/derive/derive.h"
 #include "grammar/rules/evaluate.h"
+#include "grammar/rules/traverse.h"
 
 namespace sgm::derive {
 
+namespace {
+
+/// Where the elements of loops begin that ask for one joint of the matched shape: the first copy closes it.
+std::set<std::pair<const syntax::Source*, uint32_t>> sharedJoints(const rules::Grammar& grammar) {
+    std::set<std::pair<const syntax::Source*, uint32_t>> places;
+    const auto isOne = [](const rules::Element& e) {
+        return e.kind == rules::Element::Kind::Shape && e.at && !e.at->free && !e.at->each &&
+               e.at->joints.size() == 1 && e.at->joints[0].kind == rules::Expr::Kind::Constant && !e.on;
+    };
+    const auto look = [&](const rules::Element& e) {
+        if (e.kind != rules::Element::Kind::For) return;
+        for (const auto& chain : e.body->siblings)
+            if (!chain.empty() && isOne(chain[0])) places.insert({chain[0].span.source, chain[0].span.begin});
+    };
+    for (const rules::Rule& rule : grammar.rules) {
+        rules::forEachElement(rule.body, look);
+        if (rule.finally_) rules::forEachElement(*rule.finally_, look);
+    }
+    for (const rules::Start& start : grammar.starts) rules::forEachElement(start.body, look);
+    return places;
+}
+
+}  // namespace
+
 syntax::Diagnostics ungrown(const Derivation& derivation) {
     syntax::Diagnostics warnings;
+    const auto shared = derivation.closed.empty() ? std::set<std::pair<const syntax::Source*, uint32_t>>()
+                                                  : sharedJoints(*derivation.grammar);
     for (const Closed& closed : derivation.closed) {
         const auto isOf = [&](const Shape& s) {
             return s.span.source == closed.span.source && s.span.begin == closed.span.begin &&
@@ -24,6 +52,12 @@ syntax::Diagnostics ungrown(const Derivation& derivation) {
                                       : "another shape has closed its joint, so this grows nowhere",
                              asksFree ? "name more joints in 'free(…)', or place it by 'move'"
                                       : "choose another joint of ours, 'at free(…)', or place it by 'move'");
+        else if (shared.contains({closed.span.source, closed.span.begin}))
+            warnings.warning(closed.span,
+                             fmt::format("the first of these copies closes the joint that all ask for, so {} grew "
+                                         "nowhere",
+                                         closed.count),
+                             "leave 'at' out and place the copies by 'move'");
     }
     return warnings;
 }
@@ -68,15 +102,16 @@ syntax::Diagnostics unmatched(const Derivation& derivation) {
     for (const auto& [id, shape] : first) {
         const rules::Symbol& symbol = grammar.symbols[id];
         // What a rule without a condition doesn't match has closed joints, of which `ungrown` tells; what parameters
-        // decide is a switch.
+        // decide is a switch. A `beside` is a condition.
         const auto asksTheShape = [&](uint32_t r) {
             const rules::Rule& rule = grammar.rules[r];
-            return rule.when && rule.beside == rules::none && !rules::fold(*rule.when, derivation.params) &&
-                   !isClosed(derivation, rule);
+            const bool asks = rule.when && !rules::fold(*rule.when, derivation.params);
+            return (asks || rule.beside != rules::none) && !isClosed(derivation, rule);
         };
         if (symbol.rules.empty() || !std::all_of(symbol.rules.begin(), symbol.rules.end(), asksTheShape)) continue;
         const rules::Rule& rule = grammar.rules[symbol.rules[0]];
-        warnings.warning(rule.when->span, fmt::format("a '{}' that no rule matches stays empty", symbol.name),
+        warnings.warning(rule.when ? rule.when->span : rule.symbolSpan,
+                         fmt::format("a '{}' that no rule matches stays empty", symbol.name),
                          fmt::format("the first is '{0}'; add 'rule {1} -> …' for it, or 'rule {1} -> nil' where "
                                      "nothing is meant",
                                      derivation.tree.path(shape), symbol.name));
@@ -86,7 +121,7 @@ syntax::Diagnostics unmatched(const Derivation& derivation) {
 
 Error nothingSolid(const Derivation& derivation) {
     const std::string root = derivation.tree.path(0);
-    syntax::Diagnostics causes = derivation.selections.warnings();
+    syntax::Diagnostics causes = derivation.selections.warnings(&derivation.tree);
     if (causes.all().empty()) causes = warnings(derivation);
     if (causes.all().empty())
         return {Error::Kind::Input,
@@ -100,8 +135,8 @@ Error nothingSolid(const Derivation& derivation) {
 syntax::Diagnostics warnings(const Derivation& derivation) {
     std::vector<syntax::Diagnostic> list;
     for (const Warning& r : derivation.warnings) list.push_back({syntax::Severity::Warning, r.span, r.message, r.hint});
-    for (const syntax::Diagnostics& found :
-         {derivation.selections.warnings(), ungrown(derivation), unmatched(derivation), uncut(derivation)})
+    for (const syntax::Diagnostics& found : {derivation.selections.warnings(&derivation.tree), ungrown(derivation),
+                                             unmatched(derivation), uncut(derivation)})
         list.insert(list.end(), found.all().begin(), found.all().end());
     const auto& sources = derivation.grammar->sources;
     const auto rank = [&](const syntax::Diagnostic& d) {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "grammar/pipeline/scene.h"
 #include "modeler/field/section.h"
@@ -16,7 +18,8 @@ double Section::offset_m(const Box3f& bounds) const {
 }
 
 bool Section::isBeside(const Box3f& bounds) const {
-    return !isShare && (at < static_cast<double>(bounds.lo[axis]) || at > static_cast<double>(bounds.hi[axis]));
+    const double place_m = offset_m(bounds);
+    return place_m < static_cast<double>(bounds.lo[axis]) || place_m > static_cast<double>(bounds.hi[axis]);
 }
 
 Vec3d Section::normal() const {
@@ -36,8 +39,11 @@ Result<Section> parseSection(const std::string& text) {
         const auto [rest, error] = std::from_chars(text.data() + at + 2, end, section.at);
         const std::string_view unit(rest, static_cast<size_t>(end - rest));
         section.isShare = unit == "%";
-        good = error == std::errc() && std::isfinite(section.at) && (unit.empty() || unit == "m" || unit == "%");
-        if (section.isShare) section.at /= 100;
+        constexpr std::pair<std::string_view, double> units[] = {{"", 1},      {"m", 1},     {"cm", .01},
+                                                                 {"mm", .001}, {"km", 1000}, {"%", .01}};
+        const auto known = std::ranges::find(units, unit, [](const auto& of) { return of.first; });
+        good = error == std::errc() && std::isfinite(section.at) && known != std::end(units);
+        if (good) section.at *= known->second;
     }
     if (good) return section;
     return Error{Error::Kind::Usage,

@@ -19,7 +19,7 @@ struct Section {
 
     /// Its place along the axis within these bounds, metres.
     double offset_m(const Box3f& bounds) const;
-    /// Whether its place in metres lies outside these bounds.
+    /// Whether its place lies outside these bounds.
     bool isBeside(const Box3f& bounds) const;
     /// Unit, toward what is cut away.
     Vec3d normal() const;

@@ -53,6 +53,19 @@ void findSharesOfNothing(const Element& element, const std::vector<Value>& param
     }
 }
 
+/// Whether a rule for the symbol fills its scope with a solid whose size nothing says.
+bool fillsScope(const Grammar& grammar, SymbolId symbol) {
+    return std::ranges::any_of(grammar.symbols[symbol].rules, [&](uint32_t r) {
+        const Body& body = grammar.rules[r].body;
+        return !body.grows && std::ranges::any_of(body.siblings, [&](const std::vector<Element>& chain) {
+            const Element* first = chain.empty() ? nullptr : &chain[0];
+            if (!first || first->kind != Element::Kind::Shape || isSized(*first)) return false;
+            if (const Solid* solid = first->content.solid()) return solid->kind != Solid::Kind::Nil;
+            return first->content.symbol() != none && grammar.symbols[first->content.symbol()].terminal;
+        });
+    });
+}
+
 }  // namespace
 
 void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
@@ -76,11 +89,13 @@ void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
                 const Element& e = chain[i];
                 if (e.kind != Element::Kind::Shape || !e.inMatchedFrame || e.on || isSized(e)) continue;
                 if (e.content.solid() && e.content.solid()->kind == Solid::Kind::Nil) continue;
-                if (!e.content.solid() && (e.content.symbol() == none || !grammar.symbols[e.content.symbol()].terminal))
+                const SymbolId symbol = e.content.symbol();
+                if (!e.content.solid() &&
+                    (symbol == none || !(grammar.symbols[symbol].terminal || fillsScope(grammar, symbol))))
                     continue;
                 diagnostics.warning(e.span, fmt::format("'{}' has no size, and a start's own scope is 1m", e.label),
-                                    "write its size, such as 'size (4, 3, 4)', or let it grow in a rule, where it "
-                                    "fills the matched scope");
+                                    "write its size, such as 'size (4, 3, 4)'; in a rule of what the start names it "
+                                    "fills that shape's scope");
             }
         }
     }

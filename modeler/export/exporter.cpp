@@ -104,6 +104,13 @@ Status checkOptions(const Exporter& row, const ExportOptions& options) {
                                      joined(row.options, ", ", [](const ExportOption& o) { return o.name; }))};
         if (const std::string why = refusal(*known, value); !why.empty())
             return Error{Error::Kind::Usage, fmt::format("option '{}' of {} {}", name, row.extension, why)};
+        if (known->grid.empty() || value == known->fallback) continue;
+        const auto given = options.find("grids");
+        const auto usual = std::ranges::find(row.options, std::string_view("grids"), &ExportOption::name);
+        if ((given == options.end() ? usual->fallback : given->second).find(known->grid) == std::string_view::npos)
+            return Error{Error::Kind::Usage,
+                         fmt::format("option '{0}' of {1} is about {2}, and the file holds none: add grids={2}", name,
+                                     row.extension, known->grid)};
     }
     return Done{};
 }

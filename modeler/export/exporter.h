@@ -33,7 +33,8 @@ struct ExportOption {
     std::string_view fallback;
     std::string_view choices;  ///< "y|z", or "" for free text or a number
     std::string_view doc;
-    double lo = 0, hi = 0;  ///< a number in lo … hi where lo < hi
+    double lo = 0, hi = 0;       ///< a number in lo … hi where lo < hi
+    std::string_view grid = "";  ///< that of the option `grids` without which it has no effect
 };
 /// Values by ExportOption::name.
 using ExportOptions = std::map<std::string, std::string, std::less<>>;

@@ -48,15 +48,16 @@ static Status writeVdb(const ExportInput& input, const Path& temporary, const Pa
 
 static constexpr ExportOption vdbOptions[] = {
     {"grids", "levelset", "levelset|fog|levelset,fog", "which grids the file holds; the fog's is called density"},
-    {"grid", "level_set", "", "name of the level set's grid"},
+    {"grid", "level_set", "", "name of the level set's grid", 0, 0, "levelset"},
     {"distance", "exact", "exact|raw",
-     "level set: distances to the isosurface, or the field's own values, which are steeper or flatter in places"},
+     "level set: distances to the isosurface, or the field's own values, which are steeper or flatter in places", 0, 0,
+     "levelset"},
     {"half", "no", "no|yes", "16-bit floats: about a third smaller, three digits"},
-    {"density", "1", "", "fog: density deep inside", 1e-6, 1e6},
-    {"edge", "0", "", "fog: metres of depth over which it thickens to that; 0: three voxels", 0, 1e5},
-    {"wisps", "0", "", "fog: how far noise eats into the edge", 0, 0.95},
-    {"billow", "0", "", "fog: how much noise thins the inside, which is then stored voxel by voxel", 0, 1},
-    {"lump", "0", "", "fog: metres of the largest lumps of noise; 0: an eighth of the least extent", 0, 1e5},
+    {"density", "1", "", "fog: density deep inside", 1e-6, 1e6, "fog"},
+    {"edge", "0", "", "fog: metres of depth over which it thickens to that; 0: three voxels", 0, 1e5, "fog"},
+    {"wisps", "0", "", "fog: how far noise eats into the edge", 0, 0.95, "fog"},
+    {"billow", "0", "", "fog: how much noise thins the inside, which is then stored voxel by voxel", 0, 1, "fog"},
+    {"lump", "0", "", "fog: metres of the largest lumps of noise; 0: an eighth of the least extent", 0, 1e5, "fog"},
 };
 
 constinit const Exporter vdbFormat{

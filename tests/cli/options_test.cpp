@@ -55,7 +55,30 @@ TEST_F(Cli, PicturesTellAnEyeInRockAndASectionThatCutsNothing) {
     EXPECT_NE(sgm(draw + " --section x=500")
                   .out.find("warning: --section x=500 cuts nothing: the model reaches from -4 to 4 m"),
               std::string::npos);
-    EXPECT_EQ(sgm(draw + " --section x=1").out.find("warning"), std::string::npos);
+    EXPECT_NE(sgm(draw + " --section x=150%").out.find("warning: --section x=150% cuts nothing"), std::string::npos);
+    for (const char* at : {"x=1", "x=10cm", "x=50%"})
+        EXPECT_EQ(sgm(draw + " --section " + at).out.find("warning"), std::string::npos) << at;
+    const Outcome solid =
+        sgm("render " + grammar("start A -> cube size 8\n") + " --size 16x16 --camera inside -o " + path("a.png"));
+    EXPECT_NE(solid.out.find("the model has no hollow to stand in: leave --camera inside out"), std::string::npos)
+        << solid.out;
+}
+
+TEST_F(Cli, OptionsThatWouldDoNothingAreRefused) {
+    const std::string file = grammar("start A -> cube size 8\n"), vdb = path("a.vdb"), picture = path("a_%d.png");
+    const std::string build = "build -q --cell 40cm " + file + " -o " + vdb + " --format-option ";
+    for (const auto& [options, words] :
+         {std::pair("density=7", "option 'density' of .vdb is about fog, and the file holds none: add grids=fog"),
+          std::pair("distance=raw --format-option grids=fog", "'distance' of .vdb is about levelset")}) {
+        const Outcome run = sgm(build + options);
+        EXPECT_EQ(run.code, 2) << options;
+        EXPECT_NE(run.out.find(words), std::string::npos) << run.out;
+        EXPECT_FALSE(fs::exists(vdb));
+    }
+    const Outcome numbered = sgm("render " + file + " -o " + picture);
+    EXPECT_EQ(numbered.code, 2);
+    EXPECT_NE(numbered.out.find("the name numbers pictures: add --turntable COUNT"), std::string::npos) << numbered.out;
+    EXPECT_FALSE(fs::exists(picture));
 }
 
 TEST_F(Cli, QuietSaysNothingButErrors) {

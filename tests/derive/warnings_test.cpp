@@ -57,6 +57,26 @@ TEST(Warnings, WhatAClosedJointKeepsFromGrowingIsAmongThem) {
               "2:50 none of these joints is free any more, so this grows nowhere\n");
 }
 
+TEST(Warnings, CopiesThatAskForOneJointAreTold) {
+    EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> for k in 1..3 { + cube size 1 at +y move (k, 0, 0) }\n"),
+              "3:27 the first of these copies closes the joint that all ask for, so 2 grew nowhere\n");
+    EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> for k in 1..3 { + cube size 1 move (k, 3, 0) }\n"), "");
+    EXPECT_EQ(told("start A -> cube size 4 : B\nrule B -> for d in axes { + cube size 1 at d }\n"), "");
+}
+
+TEST(Warnings, HostsThatComeLaterAreTold) {
+    const std::string halls =
+        "rule Chain -> sphere size 4 : Hall\nrule Hall repeat 4 -> + sphere size 4 at +x : Hall\n";
+    EXPECT_EQ(told("start A -> Chain - cube size 1 on each(Hall)\n" + halls),
+              "2:32 no 'Hall' stands there yet, so this grows nowhere\n");
+    EXPECT_EQ(told("start A -> Chain : B\nrule B when count(Hall) > 1 -> - cube size 1 on each(Hall)\n" + halls), "");
+    EXPECT_EQ(told("param on = false\nstart A -> cube size 9 - cube size 1 on each(Hall) "
+                   "when on { + Chain }\n" +
+                   halls),
+              "")
+        << "none ever stands there";
+}
+
 TEST(Warnings, AShapeThatNoRuleMatchesIsTold) {
     const std::string split = "start A -> size 4 split x { ~1: cube | 1m: N | 1m: N | ~2: N }\n";
     EXPECT_EQ(told(split + "rule N when scope.x > 3 -> cube\n"), "3:13 a 'N' that no rule matches stays empty\n");
@@ -67,6 +87,8 @@ TEST(Warnings, AShapeThatNoRuleMatchesIsTold) {
         << "a switch";
     EXPECT_EQ(told("start A -> cube size 4 : T\nrule T when scope.x > 1 -> cube + T size 50% at +y\n"), "")
         << "a recursion that ends";
+    EXPECT_EQ(told("start A -> cube size 3 + N at +y\nrule N beside Gate -> cube size 1\nrule Gate -> cube\n"),
+              "3:6 a 'N' that no rule matches stays empty\n");
 }
 
 TEST(Warnings, ATurnThatTheJointUndoesIsTold) {

@@ -161,6 +161,9 @@ TEST(Unsized, SolidsThatJoinASizedOneInAStartAreTold) {
     EXPECT_EQ(checked("grammar 2\nstart A -> cube size 4 + sphere at +y on last\n").messages(), "");
     EXPECT_EQ(checked("grammar 2\nstart A -> cube + sphere at +y\n").messages(), "");
     EXPECT_EQ(checked("grammar 2\nstart A -> B size 4\nrule B -> cube + sphere at +y\n").messages(), "");
+    EXPECT_EQ(checked("grammar 2\nstart A -> cube size 4 + B at +y\nrule B -> sphere\n").messages(),
+              "warning: 'B' has no size, and a start's own scope is 1m\n");
+    EXPECT_EQ(checked("grammar 2\nstart A -> cube size 4 + B at +y\nrule B -> sphere size 3\n").messages(), "");
 }
 
 TEST(Doubts, OfConstantsAreToldAtOnce) {
