@@ -78,7 +78,8 @@ ShapeId TreeBuilder::add(Shape shape, ShapeId before) {
         if (shape.depth > std::min(monitor_.budget().depth, Shapes::mostDepth)) {
             monitor_.fail(Error::Kind::Budget,
                           fmt::format("the budget of {} levels of depth is spent", monitor_.budget().depth), shape.span,
-                          "a rule that makes itself again needs an end, such as 'when scope.x > .1m'");
+                          "a rule that makes itself again needs an end: 'repeat 5', or a 'when' that fails at last, "
+                          "such as 'when scope.x > .1m'");
             return none;
         }
         if (shape.extras != none && !t.extras[shape.extras].values.empty())

@@ -117,6 +117,25 @@ std::optional<Hint> decimalComma(const Cursor& cursor) {
     return Hint{span, quoted(span.text()) + " is no number", "a decimal point is '.': write " + quoted(written)};
 }
 
+/// What stands between or behind numbers and doesn't belong there: `10 m`, `(20; 12; 6)`, `1 to 5`.
+std::optional<Hint> besideNumber(const Cursor& cursor, std::string_view message) {
+    const Token token = cursor.peek(), number = cursor.previous(1);
+    const std::string_view text = cursor.text(token);
+    if (number.kind != Token::Kind::Number) return {};
+    const std::string written(cursor.text(number));
+    constexpr std::string_view units[] = {"m", "cm", "mm", "km", "deg"};
+    const bool isPlain = written.find_first_not_of("0123456789.") == std::string::npos;
+    if (isPlain && !token.glued && std::ranges::find(units, text) != std::end(units))
+        return Hint{join(cursor.span(number), cursor.span(token)), "a unit stands behind its number without a space",
+                    "write " + quoted(written + std::string(text))};
+    if (text == ";" && message.starts_with("expected ')'"))
+        return Hint{cursor.span(token), "';' doesn't stand between numbers", "write ','"};
+    if (text == "to" && message.starts_with("unexpected") && cursor.at(Token::Kind::Number, 1))
+        return Hint{cursor.span(token), "a range has '..' between its ends",
+                    "write " + quoted(written + ".." + std::string(cursor.peekText(1)))};
+    return {};
+}
+
 Hint unknownCharacter(const Cursor& cursor) {
     const std::string_view bytes = cursor.peekText();
     Hint hint{cursor.span(cursor.peek()), "unexpected character " + quoted(bytes), {}};
@@ -135,6 +154,13 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
     const std::string_view text = cursor.text(token), before = cursor.text(cursor.previous(1));
     if (token.kind == Token::Kind::Unknown) return unknownCharacter(cursor);
     if (auto comma = decimalComma(cursor)) return comma;
+    if (auto beside = besideNumber(cursor, message)) return beside;
+    if (text == "is" && message.starts_with("expected '->'"))
+        return Hint{cursor.span(token), "there is no 'is'", "write '=='"};
+    if (text == "+" && message.starts_with("a number has no '+'") && cursor.peekText(1).size() == 1 &&
+        cursor.at(Token::Kind::Word, 1))
+        return Hint{cursor.span(token), "unknown joint " + quoted("+" + std::string(cursor.peekText(1))),
+                    "faces are '+x', '-x', '+y', '-y', '+z' and '-z'"};
     if (token.kind == Token::Kind::Color && (text == "#" || token.columnOne))
         return Hint{cursor.span(token), "a comment doesn't begin with '#'",
                     "a comment begins with '//' and ends with its line"};
@@ -170,7 +196,10 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
         return Hint{cursor.span(token), "expected a shape, found " + quoted(text),
                     "a vector stands in parentheses, as in " +
                         quoted(std::string(cursor.text(cursor.previous(3))) + " (" +
-                               std::string(cursor.text(cursor.previous(2))) + ", " + std::string(text) + ", 1)")};
+                               std::string(cursor.text(cursor.previous(2))) + ", " + std::string(text) + ", " +
+                               (cursor.at(",", 1) && cursor.at(Token::Kind::Number, 2) ? std::string(cursor.peekText(2))
+                                                                                       : "1") +
+                               ")")};
     if (text == "*" && message.starts_with("unexpected"))
         return Hint{cursor.span(token), "unexpected '*'",
                     "what two shapes share is 'a & b'; a calculation stands in parentheses"};

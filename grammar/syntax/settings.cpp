@@ -7,7 +7,9 @@
 namespace sgm::syntax {
 
 std::string missingEqualsHint(const Cursor& cursor, const Name& name) {
-    return cursor.done() ? std::string() : "write " + quoted(name.text + " = " + std::string(cursor.peekText()));
+    const size_t value = cursor.at(":") ? 1 : 0;  // what stands behind the wrong sign
+    return cursor.peekText(value).empty() ? std::string()
+                                          : "write " + quoted(name.text + " = " + std::string(cursor.peekText(value)));
 }
 
 std::vector<Setting> readSettings(Cursor& cursor) {
