@@ -43,13 +43,13 @@ void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool 
     if (!(value < 0)) return;
     // The field bounds the distance only where it doesn't jump.
     const float depth_m = -value / std::max(1.f, model.lowered->field.lipschitz);
-    const char* const wayOut = isInside ? "the model has no hollow to stand in: leave --camera inside out"
+    const char* const remedy = isInside ? "the model has no hollow to stand in: leave --camera inside out"
                                         : "move it, or write --camera inside";
     printMessage(
         "warning: the eye stands {}within the solid at ({:g}, {:g}, {:g}), from where walls are seen from within: "
         "{}\n",
         depth_m > 0 ? fmt::format("at least {:.3g} m ", depth_m) : "", camera.eye.x, camera.eye.y, camera.eye.z,
-        wayOut);
+        remedy);
 }
 
 }  // namespace sgm::cli

@@ -148,11 +148,11 @@ private:
         if (const Status s = pipeline::tryObjects(*derivation, options.budget, context); !s.ok()) return s;
         const auto model = makeModel(std::move(*derivation), context, pipeline::Objects::Apart);
         if (!model.ok()) return model.error();
-        const bool looks = setting.isMain && options_.otherSeconds > 0;
+        const bool checksMesh = setting.isMain && options_.otherSeconds > 0;
         // Objects have cells of their own, of which `sgm build` tells.
         if (placesObjects && model->lowered->field.bounds.empty()) return Done{};
         if (const Status s = placesObjects ? Done{} : hasSurface(*model); !s.ok()) return s;
-        return looks ? lookAtMesh(*model) : Status(Done{});
+        return checksMesh ? lookAtMesh(*model) : Status(Done{});
     }
 
     /// What `sgm build` would tell of the mesh at the cells that are asked for: what floats, what is too thin.

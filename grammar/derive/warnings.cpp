@@ -105,8 +105,8 @@ syntax::Diagnostics unmatched(const Derivation& derivation) {
         // decide is a switch. A `beside` is a condition.
         const auto asksTheShape = [&](uint32_t r) {
             const rules::Rule& rule = grammar.rules[r];
-            const bool asks = rule.when && !rules::fold(*rule.when, derivation.params);
-            return (asks || rule.beside != rules::none) && !isClosed(derivation, rule);
+            const bool isConditional = rule.when && !rules::fold(*rule.when, derivation.params);
+            return (isConditional || rule.beside != rules::none) && !isClosed(derivation, rule);
         };
         if (symbol.rules.empty() || !std::all_of(symbol.rules.begin(), symbol.rules.end(), asksTheShape)) continue;
         const rules::Rule& rule = grammar.rules[symbol.rules[0]];

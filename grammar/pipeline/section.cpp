@@ -39,8 +39,8 @@ Result<Section> parseSection(const std::string& text) {
         const auto [rest, error] = std::from_chars(text.data() + at + 2, end, section.at);
         const std::string_view unit(rest, static_cast<size_t>(end - rest));
         section.isShare = unit == "%";
-        constexpr std::pair<std::string_view, double> units[] = {{"", 1},      {"m", 1},     {"cm", .01},
-                                                                 {"mm", .001}, {"km", 1000}, {"%", .01}};
+        constexpr std::pair<std::string_view, double> units[] = {
+            {"", 1}, {"m", 1}, {"cm", .01}, {"mm", .001}, {"%", .01}};
         const auto known = std::ranges::find(units, unit, [](const auto& of) { return of.first; });
         good = error == std::errc() && std::isfinite(section.at) && known != std::end(units);
         if (good) section.at *= known->second;

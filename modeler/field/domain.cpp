@@ -37,7 +37,7 @@ Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath)
                                       {hashText("rotation.yx"), hashText("rotation.yy"), hashText("rotation.yz")},
                                       {hashText("rotation.zx"), hashText("rotation.zy"), hashText("rotation.zz")}};
     constexpr std::array centreNames{hashText("centre.x"), hashText("centre.y"), hashText("centre.z")};
-    // Shapes of equal axes share these slots, whoever is first or again: a zero has one sign.
+    // Shapes with equal axes share these slots. -0 equals 0, so zeros are written as +0, whichever shape writes them.
     const auto entry = [&](uint64_t name, double value) { return named(g, rotationPath, name, value + 0.0); };
     const auto along = [&](const Vec3d& column, const uint64_t* name) {
         for (int axis = 0; axis < 3; ++axis)

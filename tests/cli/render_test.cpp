@@ -112,7 +112,7 @@ TEST_F(Render, SectionsOpenEveryViewAndFile) {
                half = built(hall + " --cell .1 --section y=0 -o " + path("a.stl"));
     EXPECT_NEAR(half["mesh"]["volume_m3"].get<double>(), whole["mesh"]["volume_m3"].get<double>() / 2, .05);
     const std::string start = "build " + hall + " -o " + path("b.stl") + " --section ";
-    for (const char* wrong : {"x", "w=1", "x=", "x=1ft", "x=nan", "x=-9"})
+    for (const char* wrong : {"x", "w=1", "x=", "x=1km", "x=nan", "x=-9"})
         EXPECT_EQ(sgm(start + wrong).code, 2) << wrong;
     EXPECT_EQ(sgm("build " + hall + " -o " + path("b.scad") + " --section x=0").code, 2)
         << "trees of solids aren't cut";

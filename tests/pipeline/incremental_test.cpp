@@ -102,7 +102,7 @@ TEST(Mixed, EveryParameterKeepsTheBytes) {
     EXPECT_GT(followed.blocksKept, 0u);
 }
 
-/// Axes whose zeros differ in their sign are equal: their shapes share the rotation's numbers, whoever is made again.
+/// Axes that differ in the sign of a zero are equal: their shapes share the slots of one rotation.
 TEST(Mixed, ZerosOfEitherSignAreOneNumber) {
     const auto grammar = grammarOf(
         "grammar 2\nparam wide = .5 in .25...75\nstart A -> size (6.5, 7.5, 5.5) around 5 radius 2m { B }\n"

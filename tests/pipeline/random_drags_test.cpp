@@ -26,7 +26,7 @@ std::string withParameters(const std::string& text, uint64_t key, size_t most) {
         at = to + unit.size();
         key = mix(key);
         // A minus before a parameter is an operator, which a vector takes as well as a sign.
-        if (made == most || number.find('.') == std::string::npos || number.find("000000") == 0 || pick(key, 3) != 0) {
+        if (made == most || number.find('.') == std::string::npos || pick(key, 3) != 0) {
             body += number + unit;
             continue;
         }

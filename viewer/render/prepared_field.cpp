@@ -33,13 +33,13 @@ namespace {
 
 /// Owners of what a tape's probes meet. Where solids touch, the field within their sum is 0 again, so that the values
 /// at both ends of a probe don't tell where it meets the first of them: a step as long as the value at its beginning
-/// leads there, or near it, and two more look behind.
+/// leads there, or near it, and two more values are taken behind it.
 std::vector<OriginId> ownersAt(const eval::Tape& tape, const std::vector<PreparedField::Probe>& probes,
                                eval::Workspace& workspace) {
     constexpr float behind = 0.05f;  // of a probe
-    constexpr size_t looks = 3;
+    constexpr size_t samples = 3;
     const size_t n = probes.size();
-    std::vector<float> x(looks * n), y(looks * n), z(looks * n), values(looks * n), first(n), begin(n);
+    std::vector<float> x(samples * n), y(samples * n), z(samples * n), values(samples * n), first(n), begin(n);
     const auto put = [&](size_t row, size_t k, float share) {
         const Vec3f p = probes[k].from + (probes[k].to - probes[k].from) * share;
         x[row * n + k] = p.x, y[row * n + k] = p.y, z[row * n + k] = p.z;
@@ -51,13 +51,13 @@ std::vector<OriginId> ownersAt(const eval::Tape& tape, const std::vector<Prepare
         first[k] = std::min(std::max(step, 0.0f) + behind, 1.0f);
         put(0, k, first[k]), put(1, k, (first[k] + 1) / 2), put(2, k, 1);
     }
-    eval::evaluate(tape, {x.data(), y.data(), z.data(), looks * n}, values.data(), workspace);
+    eval::evaluate(tape, {x.data(), y.data(), z.data(), samples * n}, values.data(), workspace);
     for (size_t k = 0; k < n; ++k) {
-        const float at[looks] = {first[k], (first[k] + 1) / 2, 1};
+        const float at[samples] = {first[k], (first[k] + 1) / 2, 1};
         size_t inside = 0;
-        while (inside < looks && !(values[inside * n + k] < 0)) ++inside;
-        if (inside == 0 || inside == looks) {
-            put(0, k, at[std::min(inside, looks - 1)]);
+        while (inside < samples && !(values[inside * n + k] < 0)) ++inside;
+        if (inside == 0 || inside == samples) {
+            put(0, k, at[std::min(inside, samples - 1)]);
             continue;
         }
         const float before = values[(inside - 1) * n + k], after = values[inside * n + k];

@@ -29,8 +29,8 @@ struct PreparedField {
     float inverseLipschitz() const { return 1.0f / std::max(tape.lipschitz(), 1e-6f); }
     /// 1; −1 where `eye` stands inside the solid, which is then drawn inside out.
     float sideOf(Vec3f eye) const;
-    /// Whose surface each probe meets first: asked a twentieth of its way behind that place, at its end where it meets
-    /// none. 0 where no part owns it. Takes four values and an owner a probe.
+    /// Whose surface each probe meets first: the owner a twentieth of its way behind that place, at its end where it
+    /// meets none. 0 where no part owns it. Takes four values and an owner a probe.
     std::vector<OriginId> originsOf(const std::vector<Probe>& probes, int threads) const;
 };
 
