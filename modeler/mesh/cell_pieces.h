@@ -101,7 +101,11 @@ private:
     bool isPartedByCrease(const Loop& loop) const;
     Vec3f middleOf(uint32_t firstLoop, uint32_t endLoop) const;
     static bool isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle);
-    void fan(uint32_t loop, Vec3f middleOfAll, float apart, PieceTriangles& out);
+    void fan(uint32_t loop, Vec3f middle, PieceTriangles& out);
+    void dropTriangles(size_t triangles, PieceTriangles& out);
+    bool fanApart(uint32_t firstLoop, uint32_t endLoop, PieceTriangles& out);
+    bool searchMiddles(uint32_t firstLoop, uint32_t endLoop, PieceTriangles& out, int& tries);
+    void fanLoops(uint32_t firstLoop, uint32_t endLoop, PieceTriangles& out);
     void emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, const Polygon& piece, Vec3f normal,
               PieceTriangles& out);
 

@@ -8,6 +8,7 @@ namespace sgm::mesh {
 namespace {
 
 constexpr uint32_t mostSmall = 6;      ///< nodes of a polygon whose ears lie beside each other
+constexpr int mostTries = 4096;        ///< places for the middles of fans in one cell
 constexpr double leastSquare = 1e-16;  ///< of the sine between a plane and the way to a point beside it
 
 double square(Vec3d v) { return dot(v, v); }
@@ -148,16 +149,16 @@ bool CellPieces::isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle) {
     return breaks == 2;
 }
 
-/// Triangles from a point in the cell to all sides of the loop, which never cross each other.
-void CellPieces::fan(uint32_t l, Vec3f middleOfAll, float apart, PieceTriangles& out) {
+/// Triangles from a point in the cell, the nearest one to `place`, to all sides of the loop; they never cross each
+/// other.
+void CellPieces::fan(uint32_t l, Vec3f place, PieceTriangles& out) {
     Loop& loop = loops_[l];
     const auto nodes = std::span(nodes_).subspan(loop.firstNode, loop.endNode - loop.firstNode);
     static constexpr PiecePoint noPiece{};
     LoopNode middle{};
     middle.sides = {&noPiece, &noPiece};
     middle.isBreak = true;
-    middle.at = middleOf(l, l + 1);
-    middle.at = inCell(loop.cell, middle.at + (middle.at - middleOfAll) * apart);
+    middle.at = inCell(loop.cell, place);
     if (loop.corner < 0) {
         loop.corner = static_cast<int32_t>(corners_.size());
         corners_.emplace_back();
@@ -180,11 +181,59 @@ void CellPieces::fan(uint32_t l, Vec3f middleOfAll, float apart, PieceTriangles&
     }
 }
 
+/// Takes the cell's last triangles away: `triangles` of all are kept.
+void CellPieces::dropTriangles(size_t triangles, PieceTriangles& out) {
+    cell_.places.resize(cell_.places.size() - (out.triangles.size() - triangles));
+    out.triangles.resize(triangles), out.labels.resize(triangles), out.origins.resize(triangles);
+    while (!out.cornerNormals.empty() && out.cornerNormals.back().corner >= 3 * triangles) out.cornerNormals.pop_back();
+}
+
+/// Fans of the cell's loops, whose middles are moved away from each other until the fans don't cross. False, and no
+/// triangles, where that doesn't help.
+bool CellPieces::fanApart(uint32_t firstLoop, uint32_t endLoop, PieceTriangles& out) {
+    const size_t first = out.triangles.size();
+    const Vec3f middleOfAll = middleOf(firstLoop, endLoop);
+    for (const float apart : {0.0f, 0.5f, 1.0f, 2.0f, 4.0f}) {
+        for (uint32_t l = firstLoop; l < endLoop; ++l) {
+            const Vec3f middle = middleOf(l, l + 1);
+            fan(l, middle + (middle - middleOfAll) * apart, out);
+        }
+        if (endLoop - firstLoop == 1 || !crosses(out, first)) return true;
+        dropTriangles(first, out);
+    }
+    return false;
+}
+
+/// Fans of the loops whose middles are tried all over the cell: near its corners, edges and faces, where surfaces that
+/// leave little room between each other have most of it. False, and no triangles of these loops, where none fit.
+/// After `tries` places it gives up.
+bool CellPieces::searchMiddles(uint32_t firstLoop, uint32_t endLoop, PieceTriangles& out, int& tries) {
+    if (firstLoop == endLoop) return true;
+    const size_t firstOfCell = out.triangles.size() - cell_.places.size(), first = out.triangles.size();
+    const Vec3f middle = (cell_.low + cell_.high) * 0.5f, half = (cell_.high - cell_.low) * 0.5f;
+    for (const float share : {0.5f, 0.875f, 1.0f})
+        for (int place = 0; place < 27 && tries > 0; ++place, --tries) {
+            const Vec3f direction{static_cast<float>(place % 3 - 1), static_cast<float>(place / 3 % 3 - 1),
+                                  static_cast<float>(place / 9 - 1)};
+            fan(firstLoop, middle + half * direction * share, out);
+            if (!crosses(out, firstOfCell) && searchMiddles(firstLoop + 1, endLoop, out, tries)) return true;
+            dropTriangles(first, out);
+        }
+    return false;
+}
+
+/// Fans of all loops of a cell; they cross only where no middles were found.
+void CellPieces::fanLoops(uint32_t firstLoop, uint32_t endLoop, PieceTriangles& out) {
+    int tries = mostTries;
+    if (fanApart(firstLoop, endLoop, out) || searchMiddles(firstLoop, endLoop, out, tries)) return;
+    for (uint32_t l = firstLoop; l < endLoop; ++l) fan(l, middleOf(l, l + 1), out);
+}
+
 void CellPieces::triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnds) {
     cellEnds.clear();
     uint32_t next = 0;
     for (const uint32_t end : cellEnds_) {
-        const size_t triangles = out.triangles.size(), normals = out.cornerNormals.size();
+        const size_t triangles = out.triangles.size();
         const Vec3i cell = loops_[next].cell;
         cell_.low = grid_->corner(cell.x, cell.y, cell.z),
         cell_.high = grid_->corner(cell.x + 1, cell.y + 1, cell.z + 1);
@@ -193,14 +242,8 @@ void CellPieces::triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnd
         for (uint32_t l = next; l < end && good; ++l) good = triangulateLoop(loops_[l], out);
         const bool parted = good && end - next == 1 && isPartedByCrease(loops_[next]);
         if (!good || (!parted && crosses(out, triangles))) {
-            // Fans of several loops may cross each other: then their middles are moved apart.
-            for (const float apart : {0.0f, 0.5f, 1.0f, 2.0f, 4.0f}) {
-                out.triangles.resize(triangles), out.labels.resize(triangles), out.origins.resize(triangles);
-                out.cornerNormals.resize(normals);
-                cell_.places.clear();
-                for (uint32_t l = next; l < end; ++l) fan(l, middleOf(next, end), apart, out);
-                if (end - next == 1 || !crosses(out, triangles)) break;
-            }
+            dropTriangles(triangles, out);
+            fanLoops(next, end, out);
         }
         next = end;
         cellEnds.push_back(static_cast<uint32_t>(out.triangles.size()));
