@@ -164,10 +164,8 @@ private:
             return withOptions(pipeline::noSurface(model, meshed->grid.cell_m));
         const auto found = pipeline::meshWarnings(model, *meshed, context);
         if (!found.ok()) return found.error();
-        // Where the cells lack parts, what seems to hang over a gap may stand on them.
-        const bool lacks = std::any_of(found->begin(), found->end(), [](const auto& w) { return w.ofCells; });
         for (const pipeline::MeshWarning& w : *found)
-            if (lacks)
+            if (w.ofCells)
                 ofCells_.push_back(w);
             else
                 diagnostics_.warning(w.span, w.text);

@@ -26,18 +26,6 @@ inline double turnOf(const derive::Scope& scope, int axis) {
 /// these alone; off the middle, so that no line lies in a plane of symmetry.
 inline double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }
 
-/// Calls visit(share) for upright lines through a scope whose walls or shell are `wall_m` thick. `share` is where the
-/// line passes, in half extents, 0 along y; the outermost ones stand in walls along the scope's sides.
-template <class Visit>
-void eachUprightLine(const derive::Scope& scope, double wall_m, Visit&& visit) {
-    const auto along = [&](int i, int axis) {
-        const double outermost = std::max(1 - wall_m / scope.size[axis], 0.0);
-        return i == 0 ? -outermost : i + 1 == mostLines ? outermost : shareOf(i, mostLines);
-    };
-    for (int j = 0; j < mostLines; ++j)
-        for (int i = 0; i < mostLines; ++i) visit(Vec3d{along(i, 0), 0, along(j, 2)});
-}
-
 /// Calls visit(share, axis) for each line through the scope along its thin axes until one call returns false; whether
 /// none did. `share` is where the line passes, in half extents, 0 along the axis.
 template <class Visit>

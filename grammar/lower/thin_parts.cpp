@@ -11,26 +11,25 @@
 #include "grammar/lower/presence.h"
 #include "grammar/lower/scope_lines.h"
 #include "grammar/lower/thin_sections.h"
+#include "grammar/lower/thin_walls.h"
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
 
 namespace sgm::lower {
 namespace {
 
-constexpr int fewestSteps = 16, mostSteps = 128;  ///< between the samples on a line
-constexpr int halvings = 6;                       ///< of a step around a crossing
-constexpr size_t fewestCrossings = 3;             ///< of a part that isn't buried
-constexpr double leastMissing = 0.1;              ///< share of the surface that a part in the list lacks
-constexpr double mostlyFree = 0.9;                ///< of the lines through a plate meet both its faces
-constexpr double leastMissingArea = 0.25;         ///< share of a plate's area, which is known less well
-constexpr double leaningWall = 1.42;              ///< cells that hold a wall of any plan or a shell are thinner by this
-constexpr double probed = 1.1 * lineReach;        ///< of a scope: where its part is looked for
+constexpr int steps = 16;                   ///< between the samples on a line
+constexpr int halvings = 6;                 ///< of a step around a crossing
+constexpr size_t fewestCrossings = 3;       ///< of a part that isn't buried
+constexpr double leastMissing = 0.1;        ///< share of the surface that a part in the list lacks
+constexpr double mostlyFree = 0.9;          ///< of the lines through a plate meet both its faces
+constexpr double leastMissingArea = 0.25;   ///< share of a plate's area, which is known less well
+constexpr double probed = 1.1 * lineReach;  ///< of a scope: where its part is looked for
 
 /// A thin part, and the share of its surface that the mesh lacks; 0 where it is buried.
 struct Candidate {
     OriginId part = 0;
     derive::Scope scope;
-    double wall_m = 0;  ///< thickness of its walls or shell, where these are what is thin; else 0
     double missing = 0;
     bool isWhole = false;  ///< told by the mesh alone
     int plateAxis = -1;    ///< across it, where the scope is thin along one axis alone
@@ -115,10 +114,6 @@ private:
     /// Where lines through the scope along its thin axes cross the field's surface.
     void findCrossings(const Candidate& candidate, const eval::Tape& tape) {
         const derive::Scope& scope = candidate.scope;
-        const double wall_m = candidate.wall_m;
-        const int steps = wall_m > 0 ? static_cast<int>(std::clamp(std::ceil(2 * scope.size.y / wall_m),
-                                                                   double{fewestSteps}, double{mostSteps}))
-                                     : fewestSteps;
         rows_.clear();
         const auto add = [&](Vec3d share, int axis) {
             for (int s = 0; s <= steps; ++s) {
@@ -127,14 +122,11 @@ private:
             }
             return true;
         };
-        if (wall_m > 0)
-            eachUprightLine(scope, wall_m, [&](Vec3d share) { add(share, 1); });
-        else
-            eachLine(scope, cell_m_, add);
+        eachLine(scope, cell_m_, add);
         evaluate(rows_, tape);
         inside_.clear(), outside_.clear();
         for (size_t i = 0; i + 1 < values_.size(); ++i) {
-            if ((i + 1) % static_cast<size_t>(steps + 1) == 0 || (values_[i] < 0) == (values_[i + 1] < 0)) continue;
+            if ((i + 1) % size_t{steps + 1} == 0 || (values_[i] < 0) == (values_[i + 1] < 0)) continue;
             inside_.push_back(rows_[values_[i] < 0 ? i : i + 1]), outside_.push_back(rows_[values_[i] < 0 ? i + 1 : i]);
         }
         for (int halving = 0; halving < halvings && !inside_.empty(); ++halving) {
@@ -167,16 +159,6 @@ double cellThatHolds(const derive::Scope& scope) {
     return least * turn;
 }
 
-/// The least thickness of walls and shells that a solid's parameters say, metres; infinite where they say none.
-double wallOf(const derive::SolidValue& solid) {
-    double least = INFINITY;
-    if (!solid.primitive) return least;
-    const std::span<const field::PrimitiveParameter> row = solid.primitive->parameters;
-    for (size_t i = 0; i < row.size() && i < solid.args.size(); ++i)
-        if (row[i].isThickness && solid.args[i].num() > 0) least = std::min(least, solid.args[i].num());
-    return least;
-}
-
 /// The parts that may lack something, where they stand on hills.
 std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Model& model, double cell,
                                  const std::vector<ThinPart>* among) {
@@ -189,11 +171,9 @@ std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Mod
         if (model.shapeOf[part] == derive::none || !isWanted[part]) continue;
         const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
         if (shape.solid == derive::none) continue;
-        const bool isFlat = cellThatHolds(shape.scope) < cell;
-        const double wall_m = isFlat ? 0 : wallOf(derivation.tree.solids[shape.solid]);
-        if (!isFlat && !(wall_m / leaningWall < cell)) continue;
-        thin.push_back({.part = part, .scope = derive::liftedScope(derivation, model.shapeOf[part]), .wall_m = wall_m});
-        if (isFlat) thin.back().plateAxis = plateAxis(thin.back().scope, cell);
+        if (!(cellThatHolds(shape.scope) < cell)) continue;
+        thin.push_back({.part = part, .scope = derive::liftedScope(derivation, model.shapeOf[part])});
+        thin.back().plateAxis = plateAxis(thin.back().scope, cell);
     }
     return thin;
 }
@@ -205,8 +185,7 @@ void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Pres
         const derive::Scope& scope = thin[i].scope;
         const int axis = thin[i].plateAxis;
         const bool covers = axis < 0 || thin[i].facing_m2 >= (1 - leastMissingArea) * facesOf(scope, axis);
-        thin[i].isWhole =
-            thin[i].wall_m == 0 && covers && presence.isWhole(scope, thin[i].part, static_cast<double>(cell_m));
+        thin[i].isWhole = covers && presence.isWhole(scope, thin[i].part, static_cast<double>(cell_m));
     });
     std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
     orderByPlace(
@@ -294,21 +273,20 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     std::vector<Candidate> thin = thinParts(derivation, model, cell, among);
     const auto sections = findThinSections(derivation, model, tape, cell_m, threads, progress, among);
     if (!sections.ok()) return sections.error();
-    if (thin.empty() && sections->empty()) return std::vector<ThinPart>{};
+    auto walls = findMissingWalls(derivation, model, tape, mesh, cell_m, threads, progress, among);
+    if (!walls.ok() || (thin.empty() && sections->empty())) return walls;
     const Presence presence = presenceOf(mesh, thin, *sections, model.shapeOf.size(), cell_m);
     measureFacing(mesh, thin, model.shapeOf.size());
     probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();
-    std::vector<ThinPart> found;
+    std::vector<ThinPart> found = std::move(*walls);
     for (const Candidate& c : thin) {
         if (!(c.missing > leastMissing)) continue;
-        const bool wall = c.wall_m > 0;
-        const double holding_m = wall ? c.wall_m / leaningWall : cellThatHolds(c.scope);
         found.push_back({ThinPart::Kind::Part,
                          c.part,
                          -1,
-                         wall ? c.wall_m : minComponent(c.scope.size),
-                         holding_m,
+                         minComponent(c.scope.size),
+                         cellThatHolds(c.scope),
                          c.missing,
                          {c.scope}});
     }

@@ -10,13 +10,13 @@
 
 namespace sgm::lower {
 
-/// A part that is too thin for the cells, a thin wall at a face of a cut, or a narrow gap at a face of a part: the mesh
-/// shows none of it in places.
+/// A part that is too thin for the cells, or whose walls or shell are; a thin wall beside a cut, or a narrow gap at a
+/// face of a part: the mesh shows none of it in places.
 struct ThinPart {
     enum class Kind : uint8_t { Part, Wall, Gap };
     Kind kind = Kind::Part;
     OriginId part = 0;       ///< or the cut
-    int face = -1;           ///< of its scope, where the wall or gap is: 2 · axis + (high side); −1 for a part
+    int face = -1;           ///< of its scope, where the wall or gap is: 2 · axis + (high side); −1: anywhere
     double thickness_m = 0;  ///< the least extent of the part's scope, or of its walls or shell; of the wall or gap
     double cell_m = 0;       ///< cells no larger than this hold it
     /// Share of the part's surface without a triangle within half a cell, or of a plate's area; of lines across the
@@ -25,14 +25,14 @@ struct ThinPart {
     std::vector<derive::Scope> places;  ///< where it is
 };
 
-/// Looks at the parts whose scope is somewhere thinner than a cell, or whose walls or shell are (parapets, roofs that
-/// are open below): on lines through the scope along its thin axes, upright ones for walls, where does the field's
-/// surface belong to the part, and has the mesh a triangle of the part there? Of a plate that stands free, does the
-/// mesh cover its faces? Likewise at thin walls and narrow gaps (`findThinSections`). Those that lack more than a
-/// tenth, ascending by part. What else is thin within a thicker scope, as a needle's point or a fractal's ornament,
-/// isn't looked for. Empty for a mesh without origins. Only those `among` others are looked at, where that isn't null.
-/// About 4,000 evaluations of a shortened tape a thin part, 33,000 at most for walls, 300 to 10,000 another, O(n log
-/// n); `threads` 0: all. Error::Cancelled.
+/// Looks at the parts whose scope is somewhere thinner than a cell: on lines through the scope along its thin axes,
+/// where does the field's surface belong to the part, and has the mesh a triangle of the part there? Of a plate that
+/// stands free, does the mesh cover its faces? Likewise at thin walls and narrow gaps at the faces of boxes
+/// (`findThinSections`), and at the walls of shells and beside other cuts (`findMissingWalls`). Those that lack more
+/// than a tenth, ascending by part. What else is thin within a thicker scope, as a needle's point or a fractal's
+/// ornament, isn't looked for. Empty for a mesh without origins. Only those `among` others are looked at, where that
+/// isn't null. About 4,000 evaluations of a shortened tape a thin part, 300 to 20,000 another, O(n log n); `threads` 0:
+/// all. Error::Cancelled.
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress,

@@ -30,6 +30,11 @@ derive::ShapeId beginOf(const Model& model, std::span<const uint32_t> pieceOf, u
     return owner == derive::none ? 0 : owner;
 }
 
+/// Whether smaller cells would help.
+bool isOfCells(FloatCause::Kind kind) {
+    return kind == FloatCause::Kind::Touch || kind == FloatCause::Kind::Thin || kind == FloatCause::Kind::ThinWall;
+}
+
 }  // namespace
 
 Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m) {
@@ -56,10 +61,13 @@ std::vector<MeshWarning> floatingWarnings(const Model& model, const Support& sup
                             fmt::format("{} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f}){}{}",
                                         derive::madeBy(model.derivation, f.shape), f.piece.volume_m3, at.x, at.y, at.z,
                                         cause.empty() ? "" : "; ", cause),
-                            f.cause.kind == FloatCause::Kind::Touch || f.cause.kind == FloatCause::Kind::Thin});
+                            f.besideMissing || isOfCells(f.cause.kind)});
     }
     if (support.floating.size() > most)
-        warnings.push_back({{}, {}, fmt::format("{} more pieces float", support.floating.size() - most), false});
+        warnings.push_back({{},
+                            {},
+                            fmt::format("{} more pieces float", support.floating.size() - most),
+                            std::all_of(warnings.begin(), warnings.end(), [](const auto& w) { return w.ofCells; })});
     return warnings;
 }
 

@@ -136,10 +136,29 @@ class ThinLinks {
 public:
     ThinLinks(const Model& model, const std::vector<lower::ThinPart>& missing)
         : model_(model), shapes_(model.derivation.tree.shapes), isMissing_(shapes_.size(), false) {
-        for (const lower::ThinPart& part : missing)
+        for (const lower::ThinPart& part : missing) {
+            for (const derive::Scope& place : part.places) places_.push_back(derive::boxOf(place));
             if (part.kind == lower::ThinPart::Kind::Part) missing_.push_back(part);
+            if (part.kind != lower::ThinPart::Kind::Gap && part.face < 0) torn_.push_back(part);
+        }
         for (size_t i = 0; i < missing_.size(); ++i)
             if (shapeOf(i) != derive::none) isMissing_[shapeOf(i)] = true;
+    }
+
+    /// Whether something that the mesh lacks lies within a cell of the piece's box.
+    bool lieBeside(const mesh::ConnectedComponent& piece, double cell_m) const {
+        const Box3d around = Box3d{piece.bounds.lo.as<double>(), piece.bounds.hi.as<double>()}.inflated(cell_m);
+        return std::any_of(places_.begin(), places_.end(),
+                           [&](const Box3d& place) { return !intersection(around, place).empty(); });
+    }
+
+    /// The shell, or wall beside a cut, that the piece is a fragment of; null where it is none.
+    const lower::ThinPart* findWhole(const mesh::ConnectedComponent& piece, double cell_m) const {
+        const Box3d around = Box3d{piece.bounds.lo.as<double>(), piece.bounds.hi.as<double>()}.inflated(cell_m);
+        for (const lower::ThinPart& wall : torn_)
+            for (const derive::Scope& place : wall.places)
+                if (around.contains(place.centre)) return &wall;
+        return nullptr;
     }
 
     /// The thinnest of the missing parts that hold the piece; null where none does.
@@ -188,6 +207,8 @@ private:
     const Model& model_;
     const derive::Shapes& shapes_;
     std::vector<lower::ThinPart> missing_;  ///< whole parts
+    std::vector<Box3d> places_;             ///< of all
+    std::vector<lower::ThinPart> torn_;     ///< shells and walls that may be there in fragments
     std::vector<bool> isMissing_;           ///< by shape
 };
 
@@ -281,8 +302,17 @@ Status findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, cons
     std::optional<GapFinder> gaps;
     for (size_t i = 0; i < std::min(support.floating.size(), mostPieces); ++i) {
         Floating& f = support.floating[i];
-        if (const lower::ThinPart* thin = links.find(f.piece, static_cast<double>(cell_m))) {
-            f.cause = {FloatCause::Kind::Thin, thin->thickness_m, thin->cell_m, {}, 0, thin->part};
+        f.besideMissing = links.lieBeside(f.piece, static_cast<double>(cell_m));
+        const lower::ThinPart* thin = links.find(f.piece, static_cast<double>(cell_m));
+        if (!thin) thin = links.findWhole(f.piece, static_cast<double>(cell_m));
+        if (thin) {
+            const bool isWall = thin->kind == lower::ThinPart::Kind::Wall;
+            f.cause = {isWall ? FloatCause::Kind::ThinWall : FloatCause::Kind::Thin,
+                       thin->thickness_m,
+                       thin->cell_m,
+                       {},
+                       0,
+                       thin->part};
             continue;
         }
         if (!gaps) gaps.emplace(mesh);
@@ -322,12 +352,16 @@ std::string causeText(const Model& model, const FloatCause& cause, float cell_m)
                 "its {} and {} meet at ({:.2f}, {:.2f}, {:.2f}) by less than a cell of {:.3g} m: let them overlap "
                 "more, or take smaller cells",
                 partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y, at.z, cell_m);
-        case FloatCause::Kind::Thin: {
+        case FloatCause::Kind::Thin:
+        case FloatCause::Kind::ThinWall: {
             const double extent_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
-            return fmt::format(
-                "{}, {:.3g} m thick, holds it and is thinner than a cell of {:.3g} m: --resolution {} shows it",
-                partText(model, cause.theirs), cause.width_m, cell_m,
-                static_cast<int>(std::ceil(extent_m / cause.cell_m)));
+            const std::string part = partText(model, cause.theirs);
+            const std::string what =
+                cause.kind == FloatCause::Kind::Thin
+                    ? fmt::format("{}, {:.3g} m thick, holds it and", part, cause.width_m)
+                    : fmt::format("it is a fragment of a wall of {:.3g} m beside {}, which", cause.width_m, part);
+            return fmt::format("{} is thinner than a cell of {:.3g} m: --resolution {} shows it", what, cell_m,
+                               static_cast<int>(std::ceil(extent_m / cause.cell_m)));
         }
     }
     return {};

@@ -20,6 +20,7 @@ struct Line {
     size_t parts = 0;
     double thickness_m = 0, cell_m = 0;  ///< of the thinnest
     double missing = 0;                  ///< the sum of their shares
+    bool atFaces = false;                ///< of boxes
     syntax::SourceSpan span{};           ///< of the first one's shape
 };
 
@@ -47,7 +48,7 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
         Line& line = lines[{part.file(), part.line(), m.kind}];
         if (line.parts++ == 0) {
             const derive::ShapeId shape = model.lowered->shapeOf[m.part];
-            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, {}};
+            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, m.face >= 0, {}};
             if (shape != derive::none) line.span = model.derivation.tree.shapes[shape].span;
         }
         line.thickness_m = std::min(line.thickness_m, m.thickness_m), line.cell_m = std::min(line.cell_m, m.cell_m);
@@ -68,13 +69,15 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
             continue;
         }
         const bool one = line.parts == 1;
-        const std::string what =
-            kind == lower::ThinPart::Kind::Part
-                ? fmt::format("{} '{}' of {:.3g} m", one ? "a" : std::to_string(line.parts), line.symbol,
-                              line.thickness_m)
-                : fmt::format("{}{}{} of {:.3g} m at {} of '{}'", one ? "a " : "",
-                              kind == lower::ThinPart::Kind::Wall ? "wall" : "gap", one ? "" : "s", line.thickness_m,
-                              one ? "a face" : fmt::format("{} faces", line.parts), line.symbol);
+        const std::string count = one ? "a" : std::to_string(line.parts);
+        const std::string where = line.atFaces ? fmt::format("at {} face{} of", count, one ? "" : "s")
+                                  : one        ? "beside"
+                                               : "beside " + count;
+        const std::string what = kind == lower::ThinPart::Kind::Part
+                                     ? fmt::format("{} '{}' of {:.3g} m", count, line.symbol, line.thickness_m)
+                                     : fmt::format("{}{}{} of {:.3g} m {} '{}'", one ? "a " : "",
+                                                   kind == lower::ThinPart::Kind::Wall ? "wall" : "gap", one ? "" : "s",
+                                                   line.thickness_m, where, line.symbol);
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", file, number),
              fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}", what,

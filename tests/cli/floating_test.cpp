@@ -88,6 +88,25 @@ TEST_F(Cli, AFloatingPieceNamesTheThinPartThatHoldsIt) {
     EXPECT_EQ(fine.out.find("floats"), std::string::npos) << fine.out;
 }
 
+TEST_F(Cli, AFragmentOfAThinWallIsNoPieceOverAGap) {
+    const std::string file = grammar(
+        "start A -> size (34, 5, 3) cube + Tube size (34, 8, 26) at +y\n"
+        "rule Tube -> cylinder - cylinder size (100% - .04m, 120%, 100% - .04m)\n");
+    const Outcome run = sgm("build " + file + " --resolution 64");
+    EXPECT_NE(run.out.find("m beside 'A/cube/Tube/cylinder/cylinder' (" + file + ":3), which is thinner than a cell"),
+              std::string::npos)
+        << run.out;
+    EXPECT_EQ(run.out.find("a gap of"), std::string::npos) << run.out;
+}
+
+TEST_F(Cli, CheckTellsAGapAlsoWhereSomethingElseIsTooThin) {
+    const char* const parts[] = {"cube size (20, .5, 20) + cube size (.4, 3, .4) at +y move (.13, .4, .13)",
+                                 ", cube size (.01, 3, .01) move (7.03, 1.75, 6.03)"};
+    const Outcome both = sgm("check " + grammar("start A -> " + std::string(parts[0]) + parts[1] + "\n"));
+    EXPECT_NE(both.out.find("a gap of 0.4 m"), std::string::npos) << both.out;
+    EXPECT_NE(both.out.find("no errors, 1 warning"), std::string::npos) << both.out;
+}
+
 TEST_F(Cli, PartsThatMeetByLessThanACellAreToldFromAGap) {
     const auto built = [&](const char* place, const char* cell) {
         return sgm("build " + grammar(std::string("start A -> sphere size 5, sphere size 4 move ") + place + "\n") +

@@ -151,10 +151,39 @@ TEST(ThinParts, ParapetsAndRoofShellsAreNamed) {
                             std::string(roof) + " at +y\n");
         const auto missing = missingAt(model, 0.31f);
         ASSERT_EQ(missing.size(), 1u) << roof;
-        EXPECT_NEAR(missing[0].thickness_m, wall_m, 1e-9);
+        EXPECT_NEAR(missing[0].thickness_m, wall_m, 1e-3);
         EXPECT_LT(missing[0].cell_m, wall_m);
         EXPECT_TRUE(missingAt(model, static_cast<float>(missing[0].cell_m)).empty()) << roof;
     }
+}
+
+/// Walls of any plan and slope: neither their scopes nor faces of boxes tell that they are thin.
+TEST(ThinWalls, OfShellsAndBesideRoundCutsAreNamed) {
+    const std::pair<const char*, lower::ThinPart::Kind> models[] = {
+        {"start A -> footprint outline((0, 0), (30, 4), (34, 26), (-3, 20)) extrude 8m V\nrule V -> shellBlock(.1m)\n",
+         lower::ThinPart::Kind::Part},
+        {"start A -> size (10m, 20m, 10m) T\nrule T -> cylinder - cylinder size (100% - .2m, 120%, 100% - .2m)\n",
+         lower::ThinPart::Kind::Wall},
+        {"start A -> size (9m, 9m, 9m) T\nrule T -> sphere - sphere size (100% - .2m, 100% - .2m, 100% - .2m)\n",
+         lower::ThinPart::Kind::Wall}};
+    for (const auto& [text, kind] : models) {
+        const Lowered model("grammar 2\n" + std::string(text));
+        const auto missing = missingAt(model, 0.21f);
+        ASSERT_EQ(missing.size(), 1u) << text;
+        EXPECT_EQ(missing[0].kind, kind) << text;
+        EXPECT_NEAR(missing[0].thickness_m, .1, 2e-3) << text;
+        EXPECT_GT(missing[0].missing, .1) << text;
+        EXPECT_LT(missing[0].cell_m, .1) << text;
+        EXPECT_TRUE(missingAt(model, static_cast<float>(missing[0].cell_m)).empty()) << text;
+    }
+}
+
+/// Rock between two cavities that touch has any thickness down to none, which no cells hold.
+TEST(ThinWalls, ThatTaperAreNotMissing) {
+    const Lowered model(
+        "grammar 2\nstart A -> size (10m, 6m, 6m) T\n"
+        "rule T -> cube - sphere size 4m move (-2.02m, 0, 0) - sphere size 4m move (2.02m, 0, 0)\n");
+    EXPECT_TRUE(missingAt(model, 0.2f).empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Thin,

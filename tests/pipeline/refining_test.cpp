@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include "grammar/pipeline/incremental.h"
 #include "grammar/pipeline/missing.h"
 #include "modeler/mesh/components.h"
+#include "modeler/mesh/connected_components.h"
 #include "modeler/mesh/validate.h"
 #include "tests/mesh/mesh_bytes.h"
 #include "tests/pipeline/crisp_model.h"
@@ -98,6 +100,32 @@ TEST(Refining, WallsThatCutsLeaveAreThere) {
 TEST(Refining, NarrowGapsBetweenPartsAreThere) {
     expectHeld("start A -> cube size (8m, 1m, 3m) + Row size (6.03m, 6m, 1m) at +y\n", lower::ThinPart::Kind::Gap,
                24 + 5.53 * 6);
+}
+
+/// A shell over an oblique plan, a tube and a roof that is open below, all of 10 cm, in cells of 13 to 16 cm.
+TEST(Refining, WallsOfAnyPlanAndSlopeAreThere) {
+    struct Case {
+        const char* text;
+        int resolution;
+        double volume_m3;
+    };
+    const double rise = 5 * std::tan(35 * M_PI / 180), hollow = 1 - .1 / (5 * std::sin(35 * M_PI / 180));
+    const Case cases[] = {
+        {"start A -> footprint outline((0, 0), (30, 4), (34, 26), (-3, 20)) extrude 8m V\n"
+         "rule V -> shellBlock(.1m, 0m)\n",
+         256, 8 * 10.9922},
+        {"start A -> size (10m, 20m, 10m) T\nrule T -> cylinder - cylinder size (100% - .2m, 120%, 100% - .2m)\n", 128,
+         M_PI * 20 * (25 - 4.9 * 4.9)},
+        {"start A -> size (10m, 10m, 12m) gableRoof(35deg, cover: .1m)\n", 96, 12 * 5 * rise * (1 - hollow * hollow)}};
+    for (const Case& c : cases) {
+        Context context{nullptr, 2};
+        const Model model = modelOf("grammar 2\n" + std::string(c.text), context);
+        const MeshedModel made = meshed(model, c.resolution, 3);
+        EXPECT_TRUE(made.missing->empty()) << c.text;
+        const auto figures = mesh::measure(made.mesh);
+        EXPECT_NEAR(figures.volume_m3, c.volume_m3, .004 * c.volume_m3) << c.text;
+        EXPECT_EQ(mesh::connectedComponents(made.mesh, 0).size(), 1u) << c.text;
+    }
 }
 
 TEST(Refining, WhatIsTooThinEvenForHalvedCellsIsNamed) {

@@ -1,0 +1,374 @@
+#include "grammar/lower/thin_walls.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <span>
+
+#include "grammar/derive/boxes.h"
+#include "grammar/derive/lift.h"
+#include "grammar/lower/local_tapes.h"
+#include "grammar/lower/met_segments.h"
+#include "grammar/lower/scope_lines.h"
+#include "modeler/field/convex.h"
+
+namespace sgm::lower {
+namespace {
+
+constexpr int fewestAlong = 4, mostAlong = 16;  ///< lines along an axis
+constexpr int mostSteps = 400;                  ///< on a line
+constexpr float stepShare = 0.9f;               ///< of how far the surface is at least
+constexpr float steepest = 4;                   ///< slope of a field that is believed: fractals' is hundreds nowhere
+constexpr double leastStep = 0.06;              ///< in cells
+constexpr int halvings = 8;                     ///< of a step around a crossing
+constexpr size_t mostFollowed = 384;            ///< points of a part's surface
+/// In cells, from the surface into the solid.
+constexpr std::array depths{0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75};
+
+constexpr double leaningWall = 1.42;  ///< times a cell: a thicker wall is held as a rule
+constexpr double beyondWall = 0.5;    ///< cells beyond both surfaces of a wall within which a mesh has it
+
+constexpr size_t fewestMissing = 3;  ///< lines across a wall that the mesh lacks: a hole in it is seen
+/// Share of the surface of a shell, and of a cut, that walls are missing from.
+constexpr double leastOfShell = 0.006, leastOfCut = 0.05;
+/// Times the median: what half of the walls' thicknesses differ by at most. Where two cuts touch or two faces meet in
+/// an edge the solid has any thickness down to none, which no cells hold.
+constexpr double mostSpread = 0.8;
+
+/// A part with surface beside which the solid may be thin, where it stands on hills.
+struct WalledPart {
+    OriginId part = 0;
+    derive::Scope scope;
+    double shell_m = 0;  ///< thickness that its parameters say; 0 for a cut
+};
+
+/// Across a wall, from the part's surface to the next one.
+struct WallLine {
+    Vec3d from, inward;
+    double thickness_m = 0;
+};
+
+struct ThinWalls {
+    WalledPart of;
+    double spacing_m = 0;  ///< of the lines, at most
+    size_t points = 0;     ///< of the part's surface that were looked at
+    std::vector<WallLine> lines;
+};
+
+/// Times a thickness: the largest cells that hold a wall which faces that way, however it lies.
+double turnOf(Vec3d n) { return 1 / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)); }
+
+/// Axes of which z lies along a unit vector.
+Mat3 axesAlong(Vec3d z) {
+    const Vec3d x = normalized(cross(std::abs(z.y) < 0.7 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0}, z));
+    return {x, cross(z, x), z};
+}
+
+/// A step on a line at the ends of which the field has other signs.
+struct Bracket {
+    Vec3d from, to;
+    Vec3d middle() const { return (from + to) * 0.5; }
+};
+
+/// One worker's.
+class WallProber {
+public:
+    WallProber(const eval::Tape& tape, const Box3f& bounds, float cell_m)
+        : tapes_(tape), bounds_(bounds), cell_m_(static_cast<double>(cell_m)) {}
+
+    void probe(std::span<const WalledPart> parts, std::vector<ThinWalls>& found) {
+        std::vector<Box3f> boxes;
+        for (const WalledPart& p : parts)
+            boxes.push_back(derive::boxOf(p.scope).inflated(depths.back() * cell_m_).as<float>());
+        tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) { probePart(parts[i], tape, found); });
+    }
+
+private:
+    /// A point on the way along a line.
+    struct Walker {
+        Vec3d from, along;
+        double at_m = 0, end_m = 0;
+        float value = 0;
+        Vec3d place() const { return from + along * at_m; }
+    };
+
+    void probePart(const WalledPart& part, const eval::Tape& tape, std::vector<ThinWalls>& found) {
+        ThinWalls walls{part, listLines(part.scope), 0, {}};
+        followLines(tape);
+        walls.spacing_m *= keepOwn(part.part, tape);
+        if (surface_.empty()) return;
+        walls.points = surface_.size();
+        measure(tape, walls.lines);
+        if (!walls.lines.empty()) found.push_back(std::move(walls));
+    }
+
+    /// Lines along the scope's axes, as far as they lie in the bounds. Returns how far apart they are at most.
+    double listLines(const derive::Scope& scope) {
+        walkers_.clear();
+        double spacing_m = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+            const auto count = [&](int across) {
+                return static_cast<int>(
+                    std::clamp(std::ceil(scope.size[across] / cell_m_), double{fewestAlong}, double{mostAlong}));
+            };
+            const int alongU = count(u), alongV = count(v);
+            spacing_m = std::max({spacing_m, scope.size[u] / alongU, scope.size[v] / alongV});
+            for (int j = 0; j < alongV; ++j)
+                for (int i = 0; i < alongU; ++i) {
+                    Vec3d share{};
+                    // Off the middle, so that no line lies in a plane of symmetry.
+                    share[u] = 2 * (i + 0.535) / alongU - 1, share[v] = 2 * (j + 0.535) / alongV - 1;
+                    share[axis] = -lineReach;
+                    addLine(scope.point(share), scope.axes * alongAxis(axis), scope.size[axis] * lineReach);
+                }
+        }
+        return spacing_m;
+    }
+
+    /// Clips a line to the bounds.
+    void addLine(Vec3d from, Vec3d along, double length_m) {
+        double begin = 0, end = length_m;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double low = static_cast<double>(bounds_.lo[axis]) - cell_m_ - from[axis],
+                         high = static_cast<double>(bounds_.hi[axis]) + cell_m_ - from[axis];
+            if (std::abs(along[axis]) < 1e-9) {
+                if (low > 0 || high < 0) return;
+                continue;
+            }
+            const double toLow = low / along[axis], toHigh = high / along[axis];
+            begin = std::max(begin, std::min(toLow, toHigh)), end = std::min(end, std::max(toLow, toHigh));
+        }
+        if (begin < end) walkers_.push_back({from, along, begin, end, 0});
+    }
+
+    /// Leaves in `surface_` where lines cross the field's surface: each step is about as long as the field says.
+    void followLines(const eval::Tape& tape) {
+        surface_.clear();
+        const auto placeAll = [&] {
+            points_.clear();
+            for (const Walker& w : walkers_) points_.add(w.place().as<float>());
+            evaluate(tape);
+        };
+        const float share = stepShare / std::clamp(tape.lipschitz(), 1.0f, steepest);
+        placeAll();
+        for (size_t i = 0; i < walkers_.size(); ++i) walkers_[i].value = values_[i];
+        for (int step = 0; step < mostSteps && !walkers_.empty(); ++step) {
+            std::vector<Vec3d> before;
+            for (Walker& w : walkers_) {
+                before.push_back(w.place());
+                const auto far_m = static_cast<double>(share * std::abs(w.value));
+                w.at_m = std::min(w.at_m + std::max(far_m, leastStep * cell_m_), w.end_m);
+            }
+            placeAll();
+            size_t kept = 0;
+            for (size_t i = 0; i < walkers_.size(); ++i) {
+                Walker w = walkers_[i];
+                if ((w.value < 0) != (values_[i] < 0)) surface_.push_back({before[i], w.place()});
+                w.value = values_[i];
+                if (w.at_m < w.end_m) walkers_[kept++] = w;
+            }
+            walkers_.resize(kept);
+        }
+        halve(surface_, tape);
+    }
+
+    /// Halves the steps around crossings.
+    void halve(std::vector<Bracket>& brackets, const eval::Tape& tape) {
+        points_.clear();
+        for (const Bracket& b : brackets) points_.add(b.from.as<float>());
+        evaluate(tape);
+        const std::vector<float> atStart = values_;
+        for (int halving = 0; halving < halvings; ++halving) {
+            points_.clear();
+            for (const Bracket& b : brackets) points_.add(b.middle().as<float>());
+            evaluate(tape);
+            for (size_t i = 0; i < brackets.size(); ++i)
+                ((atStart[i] < 0) == (values_[i] < 0) ? brackets[i].from : brackets[i].to) = brackets[i].middle();
+        }
+    }
+
+    /// Keeps what is the part's own surface, not too much of it. Returns how much farther apart that is than the lines.
+    double keepOwn(OriginId part, const eval::Tape& tape) {
+        points_.clear();
+        for (const Bracket& b : surface_) points_.add(b.middle().as<float>());
+        const std::vector<OriginId>& owners = owners_.at(points_, tape, tapes_.workspace());
+        size_t own = 0;
+        for (size_t i = 0; i < surface_.size(); ++i)
+            if (owners[i] == part) surface_[own++] = surface_[i];
+        const size_t stride = std::max<size_t>((own + mostFollowed - 1) / mostFollowed, 1);
+        size_t kept = 0;
+        for (size_t i = 0; i < own; i += stride) surface_[kept++] = surface_[i];
+        surface_.resize(kept);
+        return std::sqrt(static_cast<double>(stride));
+    }
+
+    /// Goes from the surface straight into the solid.
+    void measure(const eval::Tape& tape, std::vector<WallLine>& lines) {
+        points_.clear();
+        for (const Bracket& b : surface_) points_.add(b.middle().as<float>());
+        const size_t count = surface_.size();
+        std::vector<float> dx(count), dy(count), dz(count);
+        values_.resize(count);
+        eval::evaluateGradient(tape, points_.points(), values_.data(), dx.data(), dy.data(), dz.data(),
+                               tapes_.workspace());
+        std::vector<Vec3d> from, inward;
+        for (size_t i = 0; i < count; ++i) {
+            const Vec3d out = normalized(Vec3d{dx[i], dy[i], dz[i]});
+            if (out != Vec3d{}) from.push_back(surface_[i].middle()), inward.push_back(-out);
+        }
+        points_.clear();
+        for (size_t i = 0; i < from.size(); ++i)
+            for (const double depth : depths) points_.add((from[i] + inward[i] * (depth * cell_m_)).as<float>());
+        evaluate(tape);
+        std::vector<Bracket> beyond;
+        std::vector<size_t> of;
+        for (size_t i = 0; i < from.size(); ++i) {
+            const float* const values = values_.data() + i * depths.size();
+            // In seams of parts that touch the field is 0 again.
+            const auto* const out =
+                std::find_if(values, values + depths.size(), [&](float value) { return value > tape.tieMargin(); });
+            const auto k = static_cast<size_t>(out - values);
+            if (k == depths.size()) continue;
+            const double before = k == 0 ? 0 : depths[k - 1];
+            beyond.push_back({from[i] + inward[i] * (before * cell_m_), from[i] + inward[i] * (depths[k] * cell_m_)});
+            of.push_back(i);
+        }
+        halve(beyond, tape);
+        for (size_t i = 0; i < beyond.size(); ++i) {
+            const Vec3d at = from[of[i]], n = inward[of[i]];
+            const double thickness_m = dot(beyond[i].middle() - at, n);
+            if (thickness_m * turnOf(n) < cell_m_) lines.push_back({at, n, thickness_m});
+        }
+    }
+
+    void evaluate(const eval::Tape& tape) {
+        values_.resize(points_.size());
+        eval::evaluate(tape, points_.points(), values_.data(), tapes_.workspace());
+    }
+
+    LocalTapes tapes_;
+    Box3f bounds_;
+    double cell_m_;
+    std::vector<Walker> walkers_;
+    std::vector<Bracket> surface_;
+    PointList points_;
+    std::vector<float> values_;
+    SurfaceOwners owners_;
+};
+
+/// The least thickness of walls and shells that a solid's parameters say, metres; infinite where they say none.
+double wallOf(const derive::SolidValue& solid) {
+    double least = INFINITY;
+    if (!solid.primitive) return least;
+    const std::span<const field::PrimitiveParameter> row = solid.primitive->parameters;
+    for (size_t i = 0; i < row.size() && i < solid.args.size(); ++i)
+        if (row[i].isThickness && solid.args[i].num() > 0) least = std::min(least, solid.args[i].num());
+    return least;
+}
+
+/// Its faces are those of its scope (findThinSections).
+bool isBox(const derive::SolidValue& solid) {
+    return solid.primitive && solid.primitive->convexParts == field::convex::cube;
+}
+
+/// By shape: whether it takes something away: what is cut from a cut stands.
+std::vector<bool> cutters(const derive::Shapes& shapes) {
+    std::vector<bool> cut(shapes.size());
+    for (derive::ShapeId s = 0; s < shapes.size(); ++s) {
+        const bool around = shapes[s].parent != derive::none && cut[shapes[s].parent];
+        cut[s] = around != (shapes[s].op == rules::Operator::Difference);
+    }
+    return cut;
+}
+
+std::vector<WalledPart> walledParts(const derive::Derivation& derivation, const Model& model, double cell_m,
+                                    const std::vector<ThinPart>* among) {
+    std::vector<bool> isWanted(model.shapeOf.size(), !among);
+    if (among)
+        for (const ThinPart& part : *among)
+            if (part.face < 0) isWanted[part.part] = true;
+    const std::vector<bool> cuts = cutters(derivation.tree.shapes);
+    std::vector<WalledPart> walled;
+    for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
+        const derive::ShapeId id = model.shapeOf[part];
+        if (id == derive::none || !isWanted[part]) continue;
+        const derive::Shape& shape = derivation.tree.shapes[id];
+        // What is thin as a whole is looked for likewise, but otherwise (findMissingParts).
+        if (shape.solid == derive::none || minComponent(shape.scope.size) < cell_m) continue;
+        const derive::SolidValue& solid = derivation.tree.solids[shape.solid];
+        const double wall_m = wallOf(solid);
+        const bool isShell = wall_m / leaningWall < cell_m;
+        if (!isShell && (!cuts[id] || isBox(solid))) continue;
+        walled.push_back({part, derive::liftedScope(derivation, id), isShell ? wall_m : 0});
+    }
+    return walled;
+}
+
+/// What the mesh lacks of walls, where `isMet` says of each line whether it has any. It may lack them between lines
+/// too: all of them are in its places.
+ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, double cell_m) {
+    const bool isShell = walls.of.shell_m > 0;
+    ThinPart missing{
+        .kind = isShell ? ThinPart::Kind::Part : ThinPart::Kind::Wall, .part = walls.of.part, .places = {}};
+    std::vector<double> thicknesses_m, cells_m;
+    for (size_t i = 0; i < walls.lines.size(); ++i) {
+        const WallLine& line = walls.lines[i];
+        missing.places.push_back({line.from + line.inward * (0.5 * line.thickness_m),
+                                  axesAlong(line.inward),
+                                  {walls.spacing_m, walls.spacing_m, line.thickness_m}});
+        if (isMet[i]) continue;
+        thicknesses_m.push_back(line.thickness_m), cells_m.push_back(line.thickness_m * turnOf(line.inward));
+    }
+    const auto lacked = static_cast<double>(thicknesses_m.size());
+    if (thicknesses_m.size() < fewestMissing ||
+        lacked < (isShell ? leastOfShell : leastOfCut) * static_cast<double>(walls.points))
+        return {};
+    std::sort(thicknesses_m.begin(), thicknesses_m.end()), std::sort(cells_m.begin(), cells_m.end());
+    const auto at = [](const std::vector<double>& sorted, double share) {
+        return sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))];
+    };
+    missing.thickness_m = at(thicknesses_m, 0.5);
+    if (!isShell && at(thicknesses_m, 0.75) - at(thicknesses_m, 0.25) > mostSpread * missing.thickness_m) return {};
+    if (isShell) missing.thickness_m = walls.of.shell_m;
+    missing.missing = lacked / static_cast<double>(walls.lines.size());
+    missing.cell_m = std::min(at(cells_m, 0.1), cell_m / 2);
+    return missing;
+}
+
+}  // namespace
+
+Result<std::vector<ThinPart>> findMissingWalls(const derive::Derivation& derivation, const Model& model,
+                                               const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
+                                               int threads, Progress* progress, const std::vector<ThinPart>* among) {
+    const auto cell = static_cast<double>(cell_m);
+    std::vector<WalledPart> parts = walledParts(derivation, model, cell, among);
+    orderByPlace(
+        std::span(parts), [](const WalledPart& p) { return p.scope.centre; },
+        [](const WalledPart& p) { return p.part; });
+    std::vector<std::vector<ThinWalls>> found((parts.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes);
+    probeInGroups(
+        std::span(parts), threads, progress, "thin walls", [&] { return WallProber(tape, model.field.bounds, cell_m); },
+        [&](WallProber& prober, std::span<const WalledPart> some, size_t group) { prober.probe(some, found[group]); });
+    if (cancelled(progress)) return cancelledError();
+    std::vector<std::array<Vec3f, 2>> across;
+    for (const std::vector<ThinWalls>& some : found)
+        for (const ThinWalls& walls : some)
+            for (const WallLine& line : walls.lines)
+                across.push_back({(line.from - line.inward * (beyondWall * cell)).as<float>(),
+                                  (line.from + line.inward * (line.thickness_m + beyondWall * cell)).as<float>()});
+    const std::vector<uint8_t> isMet = segmentsThatMeet(mesh, across);
+    std::vector<ThinPart> all;
+    std::span<const uint8_t> rest = isMet;
+    for (const std::vector<ThinWalls>& some : found)
+        for (const ThinWalls& walls : some) {
+            ThinPart missing = missingOf(walls, rest.first(walls.lines.size()), cell);
+            if (missing.missing > 0) all.push_back(std::move(missing));
+            rest = rest.subspan(walls.lines.size());
+        }
+    std::sort(all.begin(), all.end(), [](const ThinPart& a, const ThinPart& b) { return a.part < b.part; });
+    return all;
+}
+
+}  // namespace sgm::lower
