@@ -26,6 +26,11 @@ inline double turnOf(const derive::Scope& scope, int axis) {
 /// these alone; off the middle, so that no line lies in a plane of symmetry.
 inline double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }
 
+/// Whether eachLine has lines along an axis of the scope: it is thin there.
+inline bool isThinAlong(const derive::Scope& scope, int axis, double cell_m) {
+    return scope.size[axis] < cell_m || scope.size[axis] == minComponent(scope.size);
+}
+
 /// Calls visit(share, axis) for each line through the scope along its thin axes until one call returns false; whether
 /// none did. `share` is where the line passes, in half extents, 0 along the axis.
 template <class Visit>
@@ -35,7 +40,7 @@ bool eachLine(const derive::Scope& scope, double cell_m, Visit&& visit) {
             std::clamp(std::ceil(scope.size[across] / cell_m), double{fewestLines}, double{mostLines}));
     };
     for (int axis = 0; axis < 3; ++axis) {
-        if (!(scope.size[axis] < cell_m || scope.size[axis] == minComponent(scope.size))) continue;
+        if (!isThinAlong(scope, axis, cell_m)) continue;
         const int u = (axis + 1) % 3, v = (axis + 2) % 3, alongU = linesAlong(u), alongV = linesAlong(v);
         for (int j = 0; j < alongV; ++j)
             for (int i = 0; i < alongU; ++i) {

@@ -40,7 +40,7 @@ struct Candidate {
 int plateAxis(const derive::Scope& scope, double cell_m) {
     int found = -1;
     for (int axis = 0; axis < 3; ++axis) {
-        if (!(scope.size[axis] < cell_m || scope.size[axis] == minComponent(scope.size))) continue;
+        if (!isThinAlong(scope, axis, cell_m)) continue;
         if (found >= 0) return -1;
         found = axis;
     }
@@ -81,11 +81,19 @@ public:
     /// Looks for at most LocalTapes::mostBoxes parts that lie beside each other.
     void probe(std::span<Candidate> parts) {
         std::vector<Box3f> boxes;
-        for (const Candidate& c : parts) boxes.push_back(boxOf(c.scope, probed).as<float>());
+        for (const Candidate& c : parts) boxes.push_back(boxOfLines(c.scope));
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) { parts[i].missing = missing(parts[i], tape); });
     }
 
 private:
+    /// What eachLine passes: no more, for what else is near makes the shortened tape longer.
+    Box3f boxOfLines(derive::Scope scope) const {
+        const derive::Scope whole = scope;
+        for (int axis = 0; axis < 3; ++axis)
+            if (isThinAlong(whole, axis, cell_m_)) scope.size[axis] *= probed;
+        return boxOf(scope).as<float>();
+    }
+
     double missing(const Candidate& candidate, const eval::Tape& tape) {
         const OriginId part = candidate.part;
         findCrossings(candidate, tape);

@@ -16,6 +16,7 @@ namespace {
 constexpr int fewestAlong = 3, mostAlong = 18;  ///< lines along an axis of a face
 constexpr size_t mostFollowed = 24;             ///< lines of a face that meet surface there
 constexpr int stepHalvings = 8;                 ///< of a step around a crossing
+constexpr double leastFaced = 0.125;            ///< cells: the extent of a part beside which gaps are looked for
 constexpr std::array nearEnds{0.13, 0.3, 0.6};  ///< of a face, in cells
 constexpr double nearEndShare = 0.125;          ///< of a face, at most
 // In cells, from a face outwards:
@@ -188,7 +189,7 @@ std::vector<bool> cutShapes(const derive::Shapes& shapes) {
     return cuts;
 }
 
-std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Model& model,
+std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Model& model, double cell_m,
                                   const std::vector<ThinPart>* among) {
     std::vector<uint32_t> faces(model.shapeOf.size(), among ? 0u : 63u);
     if (among)
@@ -200,6 +201,8 @@ std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Mo
         const derive::ShapeId shape = model.shapeOf[part];
         if (faces[part] == 0 || shape == derive::none || derivation.tree.shapes[shape].solid == derive::none) continue;
         if (!model.provenance.parts[part].hasFlatFaces) continue;
+        // What no halved cells hold is missing itself, whatever the gaps beside it are.
+        if (!cuts[shape] && minComponent(derivation.tree.shapes[shape].scope.size) < leastFaced * cell_m) continue;
         all.push_back({part, derive::liftedScope(derivation, shape), faces[part], cuts[shape]});
     }
     orderByPlace(
@@ -212,7 +215,7 @@ std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Mo
 Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& derivation, const Model& model,
                                                   const eval::Tape& tape, float cell_m, int threads, Progress* progress,
                                                   const std::vector<ThinPart>* among) {
-    const std::vector<FacedPart> parts = facedParts(derivation, model, among);
+    const std::vector<FacedPart> parts = facedParts(derivation, model, static_cast<double>(cell_m), among);
     std::vector<std::vector<ThinSection>> found((parts.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes);
     probeInGroups(
         std::span(parts), threads, progress, "thin walls and gaps",
