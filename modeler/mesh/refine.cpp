@@ -16,7 +16,7 @@ namespace sgm::mesh {
 namespace {
 
 constexpr int mostFittings = 24;            ///< of the cells, which shrink each time
-constexpr size_t mostGrowth = 2;            ///< times the cells that were asked for there may come to be
+constexpr size_t mostGrowth = 4;            ///< times the cells that were asked for there may come to be
 constexpr size_t marginDivisor = 4;         ///< of the cells, for how many are meshed beyond where they grow
 constexpr size_t leastGrowth = 512;         ///< as many may always
 constexpr size_t trianglesAtOnce = 4096;    ///< of a parallel loop

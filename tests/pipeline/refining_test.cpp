@@ -97,6 +97,20 @@ TEST(Refining, WallsThatCutsLeaveAreThere) {
     EXPECT_NE(warnings[0].text.find("walls of 0.1 m at 6 faces of 'cube'"), std::string::npos) << warnings[0].text;
 }
 
+/// Lines a few metres apart find the walls; the cells between grow from there.
+TEST(Refining, LongWallsAreThereInCellsOfAnySize) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\nstart A -> size (34m, 8m, 26m) H\n"
+        "rule H -> cube - cube size (100% - .2m, 120%, 100% - .2m)\n",
+        context);
+    for (const int resolution : {80, 96, 112, 128}) {
+        const MeshedModel made = meshed(model, resolution, 3);
+        EXPECT_TRUE(made.missing->empty()) << resolution;
+        EXPECT_NEAR(mesh::measure(made.mesh).volume_m3, 8 * (34 * 26 - 33.8 * 25.8), .01) << resolution;
+    }
+}
+
 TEST(Refining, NarrowGapsBetweenPartsAreThere) {
     expectHeld("start A -> cube size (8m, 1m, 3m) + Row size (6.03m, 6m, 1m) at +y\n", lower::ThinPart::Kind::Gap,
                24 + 5.53 * 6);
