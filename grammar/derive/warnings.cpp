@@ -33,6 +33,23 @@ std::set<std::pair<const syntax::Source*, uint32_t>> sharedJoints(const rules::G
     return places;
 }
 
+/// Whether another newcomer stands before an element in its chain, as far as the text shows.
+bool followsNewcomer(syntax::SourceSpan element) {
+    const std::string_view before = element.source->text().substr(0, element.begin);
+    const size_t begin = before.find_last_of(">{|,");
+    std::string_view chain = begin == std::string_view::npos ? before : before.substr(begin + 1);
+    chain = chain.substr(0, std::min(chain.find_last_of("+-&"), chain.size()));
+    return chain.find("+ ") != std::string_view::npos || chain.find("- ") != std::string_view::npos;
+}
+
+/// What to do about a joint that another shape has closed.
+std::string closedHint(syntax::SourceSpan element) {
+    if (element.text().find(" on ") == std::string_view::npos && followsNewcomer(element))
+        return "write 'on last' to let it grow on the shape before it, choose another joint of ours, 'at free(…)', or "
+               "place it by 'move'";
+    return "choose another joint of ours, 'at free(…)', or place it by 'move'";
+}
+
 }  // namespace
 
 syntax::Diagnostics ungrown(const Derivation& derivation) {
@@ -47,11 +64,11 @@ syntax::Diagnostics ungrown(const Derivation& derivation) {
         const auto& shapes = derivation.tree.shapes;
         const bool asksFree = closed.span.text().find("at free") != std::string_view::npos;
         if (std::none_of(shapes.begin(), shapes.end(), isOf))
-            warnings.warning(closed.span,
-                             asksFree ? "none of these joints is free any more, so this grows nowhere"
-                                      : "another shape has closed its joint, so this grows nowhere",
-                             asksFree ? "name more joints in 'free(…)', or place it by 'move'"
-                                      : "choose another joint of ours, 'at free(…)', or place it by 'move'");
+            warnings.warning(
+                closed.span,
+                asksFree ? "none of these joints is free any more, so this grows nowhere"
+                         : "another shape has closed its joint, so this grows nowhere",
+                asksFree ? "name more joints in 'free(…)', or place it by 'move'" : closedHint(closed.span));
         else if (shared.contains({closed.span.source, closed.span.begin}))
             warnings.warning(closed.span,
                              fmt::format("the first of these copies closes the joint that all ask for, so {} grew "

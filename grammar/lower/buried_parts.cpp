@@ -37,6 +37,14 @@ bool isAdded(const derive::ShapeTree& tree, derive::ShapeId shape) {
     return true;
 }
 
+/// Whether a shape takes something away: what is cut from a cut stands.
+bool isCutter(const derive::ShapeTree& tree, derive::ShapeId shape) {
+    bool cuts = false;
+    for (; shape != derive::none; shape = tree.shapes[shape].parent)
+        cuts = cuts != (tree.shapes[shape].op == rules::Operator::Difference);
+    return cuts;
+}
+
 /// Whether the field at points of each scope belongs to its part.
 class Lattice {
 public:
@@ -44,6 +52,7 @@ public:
 
     /// Whether one of at most `mostSampled` parts owns a point of its scope.
     bool anyOwns(std::span<const OriginId> parts, std::span<const derive::Scope> scopes) {
+        counts_.clear();
         std::vector<Box3f> boxes;
         for (const derive::Scope& scope : scopes) boxes.push_back(derive::boxOf(scope).as<float>());
         std::array<eval::FloatInterval, mostSampled> ranges;
@@ -54,6 +63,12 @@ public:
             if (owns(parts[i], scopes[i])) return true;
         }
         return false;
+    }
+    /// Whose most points were that the last call looked at.
+    OriginId mostFrequent() const {
+        const auto most = std::max_element(counts_.begin(), counts_.end(),
+                                           [](const auto& a, const auto& b) { return a.second < b.second; });
+        return most == counts_.end() ? 0 : most->first;
     }
 
 private:
@@ -68,12 +83,14 @@ private:
                 }
         std::vector<OriginId> owners(x.size());
         eval::evaluateOrigin(local_, {x.data(), y.data(), z.data(), x.size()}, owners.data(), workspace_);
+        for (const OriginId owner : owners) ++counts_[owner];
         return std::find(owners.begin(), owners.end(), part) != owners.end();
     }
 
     const eval::Tape& tape_;
     eval::Tape local_;
     eval::Workspace workspace_;
+    std::map<OriginId, size_t> counts_;
 };
 
 /// Which parts the mesh shows, by part.
@@ -118,8 +135,11 @@ Result<std::vector<BuriedParts>> findBuriedParts(const derive::Derivation& deriv
             scopes.push_back(derive::liftedScope(derivation, model.shapeOf[some.back()]));
         }
         const auto isAddedHere = [&](OriginId part) { return isAdded(tree, model.shapeOf[part]); };
-        if (std::all_of(some.begin(), some.end(), isAddedHere) && !lattice.anyOwns(some, scopes))
-            found.push_back({element.parts.front(), element.parts.size()});
+        if (!std::all_of(some.begin(), some.end(), isAddedHere) || lattice.anyOwns(some, scopes)) continue;
+        const OriginId by = lattice.mostFrequent();
+        const derive::ShapeId shape = by == 0 ? derive::none : model.shapeOf[by];
+        const bool isCut = shape != derive::none && isCutter(tree, shape);
+        found.push_back({element.parts.front(), element.parts.size(), isCut ? by : 0});
     }
     return found;
 }

@@ -1,4 +1,4 @@
-// Parts that add nothing: all that an element of a rule's body makes lies within other solids.
+// Parts that add nothing: all that an element of a rule's body makes lies within other solids, or is cut away.
 // Enters: a derivation, its model and a mesh of it. Leaves: such elements. Assumes a mesh with origins, before it is
 // simplified.
 #pragma once
@@ -16,6 +16,7 @@ namespace sgm::lower {
 struct BuriedParts {
     OriginId first = 0;
     size_t count = 0;
+    OriginId cutter = 0;  ///< the part that cuts most of them away; 0 where what buries them stands
 };
 
 /// Samples the elements whose parts have no triangle in the mesh and join others by `+` or ',' without a blend: one is

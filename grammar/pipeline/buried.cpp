@@ -20,12 +20,17 @@ Result<std::vector<MeshWarning>> buriedWarnings(const Model& model, const mesh::
         }
         const Part& part = model.lowered->provenance.parts[parts.first];
         const bool one = parts.count == 1;
-        warnings.push_back(
-            {model.derivation.tree.shapes[model.lowered->shapeOf[parts.first]].span,
-             fmt::format("{}:{}: ", part.file(), part.line()),
-             fmt::format("{} '{}' {} within other solids and add{} nothing: move {} out, or leave {} out",
-                         one ? "a" : std::to_string(parts.count), part.symbol(), one ? "lies" : "lie", one ? "s" : "",
-                         one ? "it" : "them", one ? "it" : "them")});
+        const std::string what = fmt::format("{} '{}'", one ? "a" : std::to_string(parts.count), part.symbol());
+        std::string text =
+            fmt::format("{} {} within other solids and add{} nothing: move {} out, or leave {} out", what,
+                        one ? "lies" : "lie", one ? "s" : "", one ? "it" : "them", one ? "it" : "them");
+        if (parts.cutter != 0) {
+            const Part& cutter = model.lowered->provenance.parts[parts.cutter];
+            text = fmt::format("{} {} cut away whole by '{}' ({}:{}): move either, or make the cut smaller", what,
+                               one ? "is" : "are", cutter.symbol(), cutter.file(), cutter.line());
+        }
+        warnings.push_back({model.derivation.tree.shapes[model.lowered->shapeOf[parts.first]].span,
+                            fmt::format("{}:{}: ", part.file(), part.line()), std::move(text)});
     }
     return warnings;
 }

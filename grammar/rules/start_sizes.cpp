@@ -73,9 +73,9 @@ void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostic
         const std::vector<Value> params = valuesOf(grammar, s);
         for (const auto& chain : grammar.starts[s].body.siblings) {
             if (chain.empty() || chain[0].kind != Element::Kind::Shape || chain[0].content.empty()) continue;
-            if (std::any_of(chain[0].prefix.begin(), chain[0].prefix.end(), givesSize)) continue;
+            const bool hasSize = std::any_of(chain[0].prefix.begin(), chain[0].prefix.end(), givesSize);
             for (const Element& element : chain)
-                if (&element == &chain[0] || (element.inMatchedFrame && !element.on))
+                if (&element == &chain[0] ? !hasSize : element.inMatchedFrame && !element.on)
                     findSharesOfNothing(element, params, diagnostics);
         }
     }

@@ -17,8 +17,10 @@ std::vector<std::string> buriedIn(const std::string& body) {
     const auto found = lower::findBuriedParts(model.derivation, *model.model, model.tape(), mesh, nullptr);
     EXPECT_TRUE(found.ok());
     std::vector<std::string> names;
+    const auto symbolOf = [&](OriginId part) { return model.model->provenance.parts[part].symbol(); };
     for (const lower::BuriedParts& b : *found)
-        names.push_back(model.model->provenance.parts[b.first].symbol() + " " + std::to_string(b.count));
+        names.push_back(symbolOf(b.first) + " " + std::to_string(b.count) +
+                        (b.cutter == 0 ? "" : " by " + symbolOf(b.cutter)));
     return names;
 }
 
@@ -30,6 +32,11 @@ TEST(BuriedParts, AreThoseWithinOneOther) {
               (Names{"sphere 1", "sphere 1"}));
     EXPECT_EQ(buriedIn("start A -> cube size 4 + B size 1\nrule B -> for k in 0..3 { cone move (.3m * k, 0, 0) }"),
               Names{"cone 4"});
+}
+
+TEST(BuriedParts, AreThoseThatACutTakesAway) {
+    EXPECT_EQ(buriedIn("start A -> cube size 4 + sphere size 2 move (0, 3m, 0) - cylinder size 5 move (0, 4.5m, 0)"),
+              Names{"sphere 1 by cylinder"});
 }
 
 TEST(BuriedParts, AreNoneThatShowSomewhere) {

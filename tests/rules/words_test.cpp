@@ -49,6 +49,8 @@ TEST(Told, SharesOfAStartInSums) {
     EXPECT_EQ(told("start A -> cube size 4m + sphere size 50% at +y\n"),
               "2:34 a share of what? A start's own scope is 1m; write lengths, such as '.5m' for 50%\n");
     EXPECT_EQ(told("start A -> cube size 4m + sphere size 50% at +y on last\n"), "");
+    EXPECT_EQ(told("start A -> size 4m cube size 90% - sphere size 50%\n"),
+              "2:43 a share of what? A start's own scope is 1m; write lengths, such as '.5m' for 50%\n");
 }
 
 TEST(Told, SizesAndRangesThatAreNone) {
