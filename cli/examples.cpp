@@ -87,9 +87,11 @@ int writeNew(const std::string& name, const std::string& kind) {
     text.replace(text.find("NAME"), 4, titleOf(path.stem().string()));
     const Status written = pipeline::writeText(path, text);
     if (!written.ok()) return fail(written.error());
-    fmt::print(
-        "wrote {0}\nsgm view {0}                     see it and change it\nsgm build {0} -o {1}.glb     build it\n",
-        path.string(), path.stem().string());
+    const auto inShell = [](const std::string& name) {
+        return name.find(' ') == std::string::npos ? name : fmt::format("'{}'", name);
+    };
+    fmt::print("wrote {0}\nsgm view {1}                     see it and change it\nsgm build {1} -o {2}     build it\n",
+               path.string(), inShell(path.string()), inShell(path.stem().string() + ".glb"));
     return 0;
 }
 

@@ -191,10 +191,14 @@ Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar)
     if ((request.pick >= 0) != !request.save.empty())
         return Error{Error::Kind::Usage,
                      "--pick NUMBER and --save NAME go together: which one, and the style it becomes"};
-    for (const std::string& name : request.lock)
-        if (std::none_of(grammar.params.begin(), grammar.params.end(),
-                         [&](const rules::Param& p) { return p.name == name; }))
-            return Error{Error::Kind::Usage, fmt::format("--lock {}: no parameter is called so", name)};
+    std::vector<std::string> names;
+    for (const rules::Param& p : grammar.params) names.push_back(p.name);
+    for (const std::string& name : request.lock) {
+        if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+        const std::string near = syntax::didYouMean(name, names);
+        return Error{Error::Kind::Usage, fmt::format("--lock {}: no parameter is called so{}", name,
+                                                     near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near))};
+    }
     return Done{};
 }
 

@@ -47,10 +47,17 @@ Explanation noFace(const Derivation& derivation, ShapeId host, const FaceChoice&
     if (isCalled) {
         const auto kind = std::find_if(std::begin(rules::faceKinds), std::end(rules::faceKinds),
                                        [&](const auto& k) { return k.second == choice.kind; });
+        std::vector<std::string_view> others;
+        const bool isLarge = footprint.edgeCount() > field::mostRoofLineEdges;
+        for (const auto& [word, other] : rules::faceKinds)
+            if (!(isLarge && isLine(other)) &&
+                !facesOf(tree.shapes[host].scope, tree.footprints, tree.solidOf(host), {other, choice.word}).empty())
+                others.push_back(word);
         return {
             fmt::format("'{}' has no {}{}, so nothing grows here", tree.labels[tree.shapes[host].label], kind->first,
                         choice.word == "side" ? "" : fmt::format(" over edges called '{}'", choice.word)),
-            "name faces that it has (docs/footprints.md, 'Growing on faces')"};
+            others.empty() ? "name faces that it has (docs/footprints.md, 'Growing on faces')"
+                           : fmt::format("there it has each of {}", fmt::join(others, ", "))};
     }
     std::vector<std::string> kinds;
     for (const auto& kind : rules::faceKinds) kinds.emplace_back(kind.first);

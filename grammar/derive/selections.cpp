@@ -23,7 +23,7 @@ Explanation noEdgeCalled(std::string_view word, const plan::Footprint& footprint
     if (plan::isCommonEdgeWord(word))
         return {std::move(message), fmt::format("besides side, its edges are called {}", fmt::join(own, ", "))};
     std::vector<std::string> words(std::begin(plan::commonEdgeWords), std::end(plan::commonEdgeWords));
-    words.insert(words.end(), others.begin(), others.end());
+    for (const std::string& other : others) add(words, other);
     for (std::string& name : own) add(words, std::move(name));
     std::string hint = rules::nearestHint(word, words);
     if (hint.empty()) hint = fmt::format("the words here are {}", fmt::join(words, ", "));

@@ -113,6 +113,7 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     findShadowed(grammar, diagnostics);
     findSharesOfNothing(grammar, diagnostics);
     findUnsized(grammar, diagnostics);
+    findUnusedHeights(grammar, diagnostics);
     findWaitingCycles(grammar, diagnostics);
     findEndless(grammar, diagnostics);
     warnOfVersion(files.asts.back(), diagnostics);

@@ -145,6 +145,8 @@ Typed checkComparedWord(CheckContext& ctx, Place& place, const Written& e, const
     if (isAnyWord &&
         (e.kind == Written::Kind::Text || (e.kind == Written::Kind::Name && !ctx.names.params.contains(e.text))))
         return makeTyped(e.span, makeWord(e.text));
+    if (other.words && e.kind == Written::Kind::Text)
+        return fail(ctx, e.span, "a choice is written without quotes", fmt::format("write '{}'", e.text));
     if (!other.words || e.kind != Written::Kind::Name || ctx.names.params.contains(e.text))
         return checkExpression(ctx, place, e);
     if (std::find(other.words->begin(), other.words->end(), e.text) == other.words->end())

@@ -57,6 +57,15 @@ std::string defaultFirst(const Cursor& cursor, const Name& name) {
     return "write " + quoted("param " + name.text + " = " + value + " " + part);
 }
 
+/// The line with its choices behind 'of': 'param wall = brick of brick, stone' for 'param wall = brick | stone'.
+std::string choicesBehindOf(const Cursor& cursor, const ParamDecl& param) {
+    const std::string first(cursor.previous(1).kind == Token::Kind::Word ? cursor.text(cursor.previous(1)) : "…");
+    std::string choices = first;
+    for (size_t i = 0; cursor.at("|", i) && cursor.peek(i + 1).kind == Token::Kind::Word; i += 2)
+        choices += ", " + std::string(cursor.peekText(i + 1));
+    return "write " + quoted("param " + param.name.text + " = " + first + " of " + choices);
+}
+
 void readParam(Cursor& cursor, Ast& ast) {
     ParamDecl param;
     const uint32_t begin = cursor.take().begin;
@@ -72,6 +81,7 @@ void readParam(Cursor& cursor, Ast& ast) {
         cursor.mark(Token::Role::Part);
         readParamPart(cursor, param);
     }
+    if (cursor.at("|")) cursor.fail("choices are listed behind 'of'", choicesBehindOf(cursor, param));
     param.span = cursor.since(begin);
     if (!param.name.empty()) ast.params.push_back(std::move(param));
 }

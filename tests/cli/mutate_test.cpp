@@ -87,6 +87,7 @@ TEST_F(Cli, MutateSaysWhatIsWrong) {
     EXPECT_EQ(sgm("mutate " + file + " --pick 1").code, 2);
     EXPECT_EQ(sgm("mutate " + file + " --rows 1 --cols 2 --pick 7 --save A").code, 2);
     EXPECT_EQ(sgm("mutate " + file + " --lock nothing").code, 2);
+    EXPECT_NE(sgm("mutate " + file + " --lock widht").out.find("did you mean 'width'?"), std::string::npos);
     const Outcome none =
         sgm("mutate " + grammar("param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3)\n") +
             " --resolution 24 --rows 1 --cols 1");

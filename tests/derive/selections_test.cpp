@@ -81,8 +81,8 @@ TEST(Selections, FacesThatAShapeLacksAreTold) {
               "3:53 no edge of this plan is called 'slopes', so nothing grows here; did you mean 'slope'?\n");
     EXPECT_EQ(
         told(house + "Cover at +y\nrule Cover -> hipRoof(40deg) + cube at each(gable)\n"),
-        "4:37 'hipRoof' has no gable, so nothing grows here; name faces that it has (docs/footprints.md, 'Growing "
-        "on faces')\n");
+        "4:37 'hipRoof' has no gable, so nothing grows here; there it has each of side, corner, slope, eave, apex, "
+        "ridge, hip\n");
     EXPECT_EQ(
         told(house + "cube at +y : Post + cube size 1 at each(Post)\nrule Post -> cylinder\n"),
         "3:55 no edge of this plan is called 'Post', so nothing grows here; 'on each(Post)' is every shape of that "

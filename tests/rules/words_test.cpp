@@ -53,6 +53,26 @@ TEST(Told, SharesOfAStartInSums) {
               "2:43 a share of what? A start's own scope is 1m; write lengths, such as '.5m' for 50%\n");
 }
 
+TEST(Told, HeightsThatSomethingElseDecides) {
+    const std::string roof =
+        "the height of this size does nothing: 'hipRoof' is as high as its parameters make it; write '100%' for it\n";
+    EXPECT_EQ(told("start A -> size (10m, 9m, 12m) hipRoof(35deg)\n"), "2:12 " + roof);
+    EXPECT_EQ(told("start A -> size (9m, 4m, 9m) B\nrule B -> hipRoof size (80%, 3m, 80%)\n"), "3:19 " + roof);
+    EXPECT_EQ(told("start A -> hipRoof size (10m, 100%, 12m), hipRoof size 5m\n"), "");
+    EXPECT_EQ(told("start A -> cube from (0, 0, 0) to (3m, 4m, 0) size (.2m, 3m, .2m)\n"),
+              "2:47 the height of this size does nothing: 'from … to …' says how long the shape is; write '100%' for "
+              "it\n");
+    EXPECT_EQ(told("start A -> cube from (0, 0, 0) to (3m, 4m, 0) size (.2m, 100%, .2m)\n"), "");
+}
+
+TEST(Told, ChoicesInOtherLanguagesWords) {
+    EXPECT_EQ(told("param wall = brick | stone | wood\nstart A -> cube\n").substr(0, 93),
+              "2:20 choices are listed behind 'of'; write 'param wall = brick of brick, stone, wood'\n");
+    EXPECT_EQ(told("param wall = brick of brick, stone\nstart A -> B\nrule B when wall == \"brick\" -> cube\n"
+                   "rule B -> sphere\n"),
+              "4:21 a choice is written without quotes; write 'brick'\n");
+}
+
 TEST(Told, SizesAndRangesThatAreNone) {
     EXPECT_NE(told("start A -> cube size (10, 3)\n").find("; write all three, x, y and z"), std::string::npos);
     EXPECT_NE(told("start A -> cube size 5deg\n").find("; write a length such as '5m'"), std::string::npos);

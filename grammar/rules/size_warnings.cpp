@@ -1,4 +1,5 @@
-// What the scope of a start, 1 m wide and about the origin, makes of its first shapes.
+// Sizes that do something else than they seem to: shares of a start's scope of 1 m, none at all, heights that nothing
+// reads.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/static_analysis.h"
+#include "grammar/rules/traverse.h"
 #include "grammar/rules/value.h"
 
 namespace sgm::rules {
@@ -66,6 +68,25 @@ bool fillsScope(const Grammar& grammar, SymbolId symbol) {
     });
 }
 
+/// Whether a size says three components of which the second is a length.
+bool saysHeight(const Attribute& a) {
+    if (a.operation->phase != Operation::Phase::Scope || !givesSize(a)) return false;
+    const Expr& size = a.args[0];
+    const auto value = fold(size, {});
+    if (value) return value->kind == Value::Kind::Vector && value->count == 3 && value->units[1] == Unit::Metre;
+    if (size.kind != Expr::Kind::Tuple || size.args.size() != 3) return false;
+    const auto height = fold(size.args[1], {});
+    return height && height->units[0] == Unit::Metre;
+}
+
+/// Warns of the size among some attributes of an element of which something else decides the height.
+void findIn(const std::vector<Attribute>& attributes, const std::string& what, syntax::Diagnostics& diagnostics) {
+    for (const Attribute& a : attributes)
+        if (saysHeight(a))
+            diagnostics.warning(a.span, fmt::format("the height of this size does nothing: {}", what),
+                                "write '100%' for it");
+}
+
 }  // namespace
 
 void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
@@ -98,6 +119,26 @@ void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
                                     "fills that shape's scope");
             }
         }
+    }
+}
+
+void findUnusedHeights(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
+    const auto look = [&](const Element& e) {
+        if (e.span.source != grammar.sources[0].get()) return;
+        const Solid* solid = e.content.solid();
+        const bool isRoof = solid && solid->primitive && solid->primitive->plan == field::PlanUse::OwnHeight;
+        const auto spans = [](const Attribute& a) { return takes(a, syntax::ArgumentType::Point); };
+        const bool isSpan = std::any_of(e.attributes.begin(), e.attributes.end(), spans);
+        if (!isRoof && !isSpan) return;
+        const std::string what = isSpan
+                                     ? "'from … to …' says how long the shape is"
+                                     : fmt::format("'{}' is as high as its parameters make it", solid->primitive->name);
+        findIn(e.prefix, what, diagnostics), findIn(e.attributes, what, diagnostics);
+    };
+    for (const Start& start : grammar.starts) forEachElement(start.body, look);
+    for (const Rule& rule : grammar.rules) {
+        forEachElement(rule.body, look);
+        if (rule.finally_) forEachElement(*rule.finally_, look);
     }
 }
 
