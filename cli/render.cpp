@@ -40,11 +40,18 @@ struct FogRequest {
     double extinction = 0;
 };
 
+/// Where the eye stands, and by what light it sees.
+struct CameraRequest {
+    std::string place;   ///< as cameraFor reads it
+    double lamp_m = -1;  ///< reach of a lamp beside the eye; negative: one where a mesh is seen from a hollow
+};
+
 struct RenderRequest {
     ModelRequest model;
     GridRequest grid{.resolution = 256};
     MeshEdits edits;
-    std::string output, size = "960x720", view = "field", camera, rays = "best";
+    std::string output, size = "960x720", view = "field", rays = "best";
+    CameraRequest camera;
     std::vector<std::string> layers;
     FogRequest fog;
     int samples = 8, turntable = 0;  ///< turntable: how many pictures around the model, 0 for one
@@ -232,7 +239,7 @@ Status drawOne(const RenderRequest& request, const Painter& paint, const render:
 /// The camera after a share of a turn: around the model, or from inside it around where the eye stands.
 render::Camera cameraAfter(const RenderRequest& request, render::Camera camera, int picture) {
     const double angle = 2 * pi * picture / request.turntable;
-    if (request.camera != "inside") return render::turned(camera, angle);
+    if (request.camera.place != "inside") return render::turned(camera, angle);
     std::swap(camera.eye, camera.at);
     camera = render::turned(camera, angle);
     std::swap(camera.eye, camera.at);
@@ -261,14 +268,18 @@ Status drawAll(const RenderRequest& request) {
     }
     const Box3f bounds = model->derivation.objects.empty() ? render::tighten(model->tape, model->lowered->field.bounds)
                                                            : mesh->mesh.bounds();
-    const auto camera = cameraFor(request.camera, request.turntable > 0, *model, bounds,
-                                  static_cast<double>(options->width) / options->height);
+    auto camera = cameraFor(request.camera.place, request.turntable > 0, *model, bounds,
+                            static_cast<double>(options->width) / options->height);
     if (!camera.ok()) return camera.error();
-    if (!request.print.quiet && request.view != "fog") warnOfEye(*model, *camera, request.camera == "inside");
+    if (!request.print.quiet && request.view != "fog") warnOfEye(*model, *camera, request.camera.place == "inside");
+    if (request.camera.lamp_m >= 0)
+        camera->lamp_m = request.camera.lamp_m;
+    else if (camera->lamp_m == 0 && drawsMesh(request) && model->derivation.objects.empty())
+        camera->lamp_m = render::lampFor(model->tape, bounds, camera->eye);
     options->camera = *camera;
     options->samples = request.samples;
     options->threads = request.grid.threads;
-    options->ground = !request.noGround && request.camera != "inside";
+    options->ground = !request.noGround && request.camera.place != "inside";
     const auto paint = painterOf(request, *model, mesh, bounds, watch.progress());
     if (!paint.ok()) return paint.error();
     const Provenance& provenance = model->lowered->provenance;
@@ -340,8 +351,14 @@ void addRender(CLI::App& app, int& exitCode) {
                      "its hard edges (creases), fog in its place, or the facade ids and storeys of what is clad")
         ->check(oneOf({"field", "mesh", "labels", "creases", "fog", "ids"}))
         ->capture_default_str();
-    command->add_option("--camera", request->camera,
+    command->add_option("--camera", request->camera.place,
                         "x,y,z,x,y,z: the eye and what it looks at; or 'inside' for a cave");
+    command
+        ->add_option("--lamp", request->camera.lamp_m,
+                     "Reach of a warm lamp beside the eye in metres, 0 for none; by default one lights hollows from "
+                     "which a mesh "
+                     "is seen, and what --camera inside shows")
+        ->check(CLI::Range(0.0, 1e6));
     command
         ->add_option("--aov", request->layers,
                      "Layers beside the colour of an .exr: depth, normal, position, origin, ao; metres, ids of shapes "

@@ -64,6 +64,20 @@ TEST_F(Cli, PicturesTellAnEyeInRockAndASectionThatCutsNothing) {
         << solid.out;
 }
 
+TEST_F(Cli, AMeshSeenFromAHollowIsLitByALamp) {
+    const std::string file = grammar("start A -> cube size 8 - sphere size 6\n");
+    const auto drawn = [&](const std::string& options) {
+        const Outcome run = sgm("render " + file + " --size 32x32 --view mesh --resolution 32 -o " + path("a.png") +
+                                " --camera " + options);
+        return run.code == 0 ? read(path("a.png")) : "";
+    };
+    const std::string lit = drawn("0,0,0,3,0,0");
+    if (lit.empty()) GTEST_SKIP() << "nothing can be drawn here";
+    EXPECT_NE(lit, drawn("0,0,0,3,0,0 --lamp 0"));
+    EXPECT_EQ(drawn("20,0,0,3,0,0"), drawn("20,0,0,3,0,0 --lamp 0"));
+    EXPECT_EQ(sgm("render " + file + " --lamp -1 -o " + path("a.png")).code, 2);
+}
+
 TEST_F(Cli, OptionsThatWouldDoNothingAreRefused) {
     const std::string file = grammar("start A -> cube size 8\n"), vdb = path("a.vdb"), picture = path("a_%d.png");
     const std::string build = "build -q --cell 40cm " + file + " -o " + vdb + " --format-option ";

@@ -290,6 +290,20 @@ TEST_F(Picture, InsideStandsInTheHollow) {
     }
 }
 
+TEST_F(Picture, AnEyeInAHollowHasALampAndOneInTheOpenHasNone) {
+    Scene scene;
+    const field::Field rock = scene.solid("cube", {0, 0, 0}, {4, 3, 3}),
+                       cave = scene.solid("sphere", {1, 0.5, 0}, {2, 2, 2}),
+                       pit = scene.solid("cube", {-3, 2, 0}, {1, 2, 1});
+    const field::Field field = field::difference({field::difference({rock, 0}, {cave, 0}), 0}, {pit, 0});
+    const eval::Tape tape = scene.compile(field);
+    EXPECT_GT(lampFor(tape, field.bounds, {1, 0.5, 0}), 1.9);
+    EXPECT_LT(lampFor(tape, field.bounds, {1, 0.5, 0}), 8);
+    EXPECT_EQ(lampFor(tape, field.bounds, {-3, 2.5, 0}), 0) << "in a pit";
+    EXPECT_EQ(lampFor(tape, field.bounds, {-1.5, 2.5, 2.5}), 0) << "in the rock";
+    EXPECT_EQ(lampFor(tape, field.bounds, {9, 0, 0}), 0);
+}
+
 TEST_F(Picture, InsidePrefersAnOpenPitToTheSolid) {
     Scene scene;
     const field::Field rock = scene.solid("cube", {0, 0, 0}, {6, 3, 4}),

@@ -29,6 +29,9 @@ Camera turned(Camera camera, double angle);
 /// inside`). A field without a hollow is taken as the hollow itself: the camera stands in its solid, which is then
 /// drawn inside out.
 Camera inside(const eval::Tape& tape, const Box3f& bounds);
+/// How far a lamp beside an eye has to reach, metres, where this stands in a hollow: the surface lies in nine of ten
+/// directions within `bounds`. 0 elsewhere. Some 6,000 values of the field.
+double lampFor(const eval::Tape& tape, const Box3f& bounds, Vec3d eye);
 /// The height of the surface straight below a place that is in the open, metres; nothing where none is found above
 /// `lowest_m`. Some fifty values of the field.
 std::optional<double> surfaceBelow(const eval::Tape& tape, Vec3d from, double lowest_m);

@@ -1,5 +1,6 @@
 // Where to stand inside a hollow: a coarse grid of the field says which empty places are enclosed and how deep they
 // are, rays say where one can look far.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -54,22 +55,29 @@ Stand deepest(const Samples& grid) {
     return best > 0 ? hollow : solid;
 }
 
-/// How far one can go from the stand in each direction before meeting the surface or leaving the bounds, metres.
-std::vector<float> freeDistances(const eval::Tape& tape, const Samples& grid, const Stand& stand,
-                                 const std::vector<Vec3f>& directions) {
-    std::vector<float> distances(directions.size(), 0.0f);
+/// How far one can go in a direction before meeting the surface, metres, or leaving the bounds.
+struct Way {
+    float length = 0;
+    bool leaves = false;
+};
+
+/// By direction. `cell` is that of a grid over the bounds, metres.
+std::vector<Way> freeWays(const eval::Tape& tape, const Box3f& bounds, float cell, const Stand& stand,
+                          const std::vector<Vec3f>& directions) {
+    std::vector<Way> ways(directions.size());
     std::vector<bool> stopped(directions.size(), false);
     for (int step = 0; step < 64; ++step) {
         std::vector<Vec3f> points;
-        for (size_t i = 0; i < directions.size(); ++i) points.push_back(stand.place + directions[i] * distances[i]);
+        for (size_t i = 0; i < directions.size(); ++i) points.push_back(stand.place + directions[i] * ways[i].length);
         const std::vector<float> values = valuesAt(tape, points);
         for (size_t i = 0; i < directions.size(); ++i) {
             const float free = stand.side * values[i] / std::max(tape.lipschitz(), 1e-6f);
-            stopped[i] = stopped[i] || free < 0.1f * grid.cell || !grid.bounds.contains(points[i]);
-            if (!stopped[i]) distances[i] += free;
+            ways[i].leaves = ways[i].leaves || !bounds.contains(points[i]);
+            stopped[i] = stopped[i] || free < 0.1f * cell || ways[i].leaves;
+            if (!stopped[i]) ways[i].length += free;
         }
     }
-    return distances;
+    return ways;
 }
 
 }  // namespace
@@ -84,18 +92,41 @@ Camera inside(const eval::Tape& tape, const Box3f& bounds) {
             const double angle = turn * pi / 24;
             directions.push_back(normalized(Vec3d{std::cos(angle), rise, std::sin(angle)}).as<float>());
         }
-    const std::vector<float> distances = freeDistances(tape, grid, stand, directions);
-    const size_t best = static_cast<size_t>(std::max_element(distances.begin(), distances.end()) - distances.begin());
-    const Vec3f look = directions[best];
+    const std::vector<Way> ways = freeWays(tape, grid.bounds, grid.cell, stand, directions);
+    const auto longest = std::max_element(ways.begin(), ways.end(),
+                                          [](const Way& one, const Way& other) { return one.length < other.length; });
+    const Vec3f look = directions[static_cast<size_t>(longest - ways.begin())];
     // Step back from the deepest place, to see the hollow from its edge.
-    const float back = freeDistances(tape, grid, stand, {-look}).front();
+    const float back = freeWays(tape, grid.bounds, grid.cell, stand, {-look}).front().length;
     const Vec3f eye = stand.place - look * std::max(0.0f, 0.6f * back - 0.2f * stand.depth);
     Camera camera;
     camera.eye = eye.as<double>();
-    camera.at = (eye + look * std::max(distances[best], grid.cell)).as<double>();
+    camera.at = (eye + look * std::max(longest->length, grid.cell)).as<double>();
     camera.fieldOfView = radians(70);
-    camera.lamp_m = std::max(2.0f * stand.depth, 0.5f * (back + distances[best]));
+    camera.lamp_m = std::max(2.0f * stand.depth, 0.5f * (back + longest->length));
     return camera;
+}
+
+double lampFor(const eval::Tape& tape, const Box3f& bounds, Vec3d eyeAt) {
+    constexpr int directionCount = 96;
+    constexpr double mostOpen = 0.1;  // of the directions
+    const Vec3f eye = eyeAt.as<float>();
+    if (!bounds.contains(eye)) return 0;
+    const Stand stand{eye, valuesAt(tape, {eye})[0], 1};
+    if (!(stand.depth > 0)) return 0;
+    std::vector<Vec3f> directions;
+    for (int i = 0; i < directionCount; ++i) {  // a spiral of equal areas
+        const double y = 1 - (2.0 * i + 1) / directionCount, turn = i * pi * (3 - std::sqrt(5.0));
+        const double r = std::sqrt(1 - y * y);
+        directions.push_back(Vec3d{r * std::cos(turn), y, r * std::sin(turn)}.as<float>());
+    }
+    const float cell = maxComponent(bounds.size()) / Samples::edge;
+    const std::vector<Way> ways = freeWays(tape, bounds, cell, stand, directions);
+    const auto open = std::count_if(ways.begin(), ways.end(), [](const Way& way) { return way.leaves; });
+    if (static_cast<double>(open) > mostOpen * directionCount) return 0;
+    float longest = 2 * stand.depth;
+    for (const Way& way : ways) longest = std::max(longest, way.length);
+    return longest;
 }
 
 std::optional<double> surfaceBelow(const eval::Tape& tape, Vec3d from, double lowest_m) {
