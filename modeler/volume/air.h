@@ -23,14 +23,16 @@ struct Air {
     std::vector<std::array<uint32_t, 6>> next;  ///< neighbours toward +x -x +y -y +z -z, or `nowhere`
     std::vector<uint8_t> rim;    ///< bit d: the voxel lies in the box's outermost layer toward d, all clear there
     std::vector<float> floor_m;  ///< height of the rock's surface right below; NaN where none is
+    std::vector<float> roof_m;   ///< the same right above
 
     size_t size() const { return voxels.size(); }
     Vec3f place(uint32_t id) const { return origin + voxels[id].as<float>() * voxel_m; }
 };
 
-/// `hollow`: the level set's inside is the air, the rock around it without end. Clearance solves the eikonal equation
-/// (OpenVDB's fast sweeping, Zhao 2005, first order), so noise and morphs, whose fields grow slower than a distance,
-/// count in metres. Error::Budget for more than 2²⁶ air voxels.
+/// `hollow`: the level set's inside is the air, the rock around it without end. Clearance is the distance to points
+/// of the rock's surface, found in the order of the eikonal equation's solution (OpenVDB's fast sweeping, Zhao 2005),
+/// so noise and morphs, whose fields grow slower than a distance, count in metres. Error::Budget for more than 2²⁶ air
+/// voxels.
 Result<Air> airOf(const Volume& level, bool hollow, Progress* progress);
 
 }  // namespace sgm::volume

@@ -66,7 +66,7 @@ struct CaveFloor {
     double floor_m2[4] = {};                                      ///< of each class, down to the one before
     struct Headroom {
         float least_m = 0, median_m = 0, greatest_m = 0;
-    } headroom;              ///< over floors not too steep, under a roof, where the agent's ball fits
+    } headroom;              ///< over floors not too steep, under a roof, where the agent's ball fits; 0: nowhere
     double walkable_m2 = 0;  ///< floor on which the agent can stand
     uint32_t walkParts = 0;  ///< parts of that floor with no walk between them
     double reachable_m2 =

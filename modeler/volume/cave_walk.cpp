@@ -155,8 +155,7 @@ void Walk::measureFloors() {
         while (k < 4 && slope_deg > Cave::slopeClasses_deg[k]) ++k;
         if (k < 4) cave_.floor_m2[k] += area(span);
         const uint32_t top = span.first + span.count - 1;
-        if (gentle(span) && span.hasRoof && holdsBall(span))
-            headrooms.push_back(air_.place(top).y + std::min(air_.clearance_m[top], 2 * half_m_) - span.floor_m);
+        if (gentle(span) && span.hasRoof && holdsBall(span)) headrooms.push_back(air_.roof_m[top] - span.floor_m);
     }
     if (headrooms.empty()) return;
     std::sort(headrooms.begin(), headrooms.end());

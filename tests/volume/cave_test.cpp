@@ -32,13 +32,18 @@ struct Dig {
         : isFloor_(std::move(isFloor)) {
         std::vector<field::Owned> parts;
         for (const auto& [centre, size] : boxes) parts.push_back({box(graph, centre, size), 0});
-        const Field air = field::sum(graph, parts);
-        field = hollow ? air : field::difference({box(graph, {0, 0, 0}, half), 0}, {air, 0});
-        survey(cell_m, agent, hollow);
+        cut(field::sum(graph, parts), cell_m, agent, hollow, half);
     }
+    /// The air that `airIn` makes of a graph, cut from the block.
+    Dig(Field (*airIn)(Graph&), float cell_m, Agent agent = {}) { cut(airIn(graph), cell_m, agent, false, {12, 6, 6}); }
 
 private:
     FloorFilter isFloor_;
+
+    void cut(const Field& air, float cell_m, Agent agent, bool hollow, Vec3f half) {
+        field = hollow ? air : field::difference({box(graph, {0, 0, 0}, half), 0}, {air, 0});
+        survey(cell_m, agent, hollow);
+    }
 
     void survey(float cell_m, Agent agent, bool hollow) {
         const eval::Tape tape = eval::compile(graph, field, graph.constants());
@@ -94,6 +99,34 @@ TEST(CaveReport, ThreeRoomsAndTwoPassagesOneTooNarrow) {
         EXPECT_NEAR(cave.reachable_m2, 9 + 9 + 5 * 1, 5);
         // From corner to corner of the first two rooms: 8 + 3 m along, bent round the passage.
         EXPECT_NEAR(cave.longestWalk_m, 11 + 1, 1.5);
+    }
+}
+
+/// Fronts from all sides meet in the middle of a ball.
+TEST(CaveReport, ABallsRadiusIsGoodToAVoxel) {
+    const auto ball = [](Graph& g) {
+        return Field{sqrt(g.x() * g.x() + g.y() * g.y() + g.z() * g.z()) - 4.0f, {{-4, -4, -4}, {4, 4, 4}}, 1, 1};
+    };
+    for (const float cell : {0.31f, 0.16f, 0.08f}) {
+        const Cave cave = Dig(ball, cell).cave;
+        ASSERT_EQ(cave.rooms.size(), 1u);
+        EXPECT_NEAR(cave.rooms[0].radius_m, 4, cell) << cell;
+        EXPECT_LE(cave.rooms[0].radius_m + length(cave.rooms[0].at), 4 + 0.25 * static_cast<double>(cell)) << cell;
+    }
+}
+
+/// A hall 4 m wide under a roof that rises by seven tenths, 1.1 to 3.9 m high; beside walls the agent's ball has no
+/// room.
+TEST(CaveReport, HeadroomUnderASlantIsMeasuredUpright) {
+    const auto hall = [](Graph& g) {
+        const Field whole = box(g, {0, 1, 0}, {2, 2.5f, 2});
+        return Field{
+            max(whole.value, (g.y() - 1.0f + g.x() * 0.7f) * 0.819232f), {{-2, -1.5f, -2}, {2, 3.5f, 2}}, 1, 1};
+    };
+    for (const float cell : {0.2f, 0.1f}) {
+        const auto headroom = Dig(hall, cell, {.radius_m = 0.3, .height_m = 1.8}).cave.headroom;
+        EXPECT_NEAR(headroom.greatest_m, 2.5 + 0.7 * 1.7, 0.7 * static_cast<double>(cell)) << cell;
+        EXPECT_NEAR(headroom.median_m, 2.5, 0.5 * static_cast<double>(cell)) << cell;
     }
 }
 
