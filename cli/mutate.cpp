@@ -191,6 +191,11 @@ Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar)
     if ((request.pick >= 0) != !request.save.empty())
         return Error{Error::Kind::Usage,
                      "--pick NUMBER and --save NAME go together: which one, and the style it becomes"};
+    const auto style = std::find_if(grammar.styles.begin(), grammar.styles.end(),
+                                    [&](const rules::Style& s) { return s.name == request.save; });
+    if (style != grammar.styles.end())
+        return Error{Error::Kind::Input, fmt::format("{}there is a style '{}' already: save under another name",
+                                                     syntax::placeText(style->span), request.save)};
     std::vector<std::string> names;
     for (const rules::Param& p : grammar.params) names.push_back(p.name);
     for (const std::string& name : request.lock) {

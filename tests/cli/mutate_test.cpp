@@ -51,6 +51,10 @@ TEST_F(Cli, MutateWritesTheChosenOneBack) {
     const Outcome again = sgm("build " + file + " --style Lucky --resolution 32 -o " + path("b.ply"));
     ASSERT_EQ(again.code, 0) << again.out;
     EXPECT_EQ(read(path("a.ply")), read(path("b.ply")));
+    const Outcome twice = sgm(command + " --pick 1 --save Lucky");
+    EXPECT_EQ(twice.code, 1);
+    EXPECT_NE(twice.out.find("there is a style 'Lucky' already: save under another name"), std::string::npos)
+        << twice.out;
 }
 
 TEST_F(Cli, MutateShowsNothingTwice) {
