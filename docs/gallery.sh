@@ -105,11 +105,11 @@ town() {
   /usr/bin/convert -density 100 -background white "$drawn/a.svg" "$drawn/a.png"
   keep "$drawn/a.png" town/curves 500
   "$sgm" render examples/city/town.sgm --view mesh --cell 4 --object-cell .8 --size 1600x900 --camera "1150,620,1500,-150,-60,-150" -q -o "$drawn/a.png"
-  keep "$drawn/a.png" town/town 1000
+  keep "$drawn/a.png" town/town 800
   "$sgm" render examples/city/town.sgm --set side=1000 --view mesh --cell 1 --object-cell .25 --size 1400x900 --camera "330,180,330,-30,20,-30" -q -o "$drawn/a.png"
   keep "$drawn/a.png" town/centre 800
   "$sgm" render examples/city/hills.sgm --view mesh --cell 2.2 --object-cell .6 --size 1400x800 --camera "560,250,640,-60,-10,-80" -q -o "$drawn/a.png"
-  keep "$drawn/a.png" town/hills 900
+  keep "$drawn/a.png" town/hills 800
 }
 
 # shoot NAME FILE SIZE WORDS: NAME.jpg, the window about FILE on a display of its own after xdotool did what WORDS say.
