@@ -87,8 +87,11 @@ int writeNew(const std::string& name, const std::string& kind) {
     text.replace(text.find("NAME"), 4, titleOf(path.stem().string()));
     const Status written = pipeline::writeText(path, text);
     if (!written.ok()) return fail(written.error());
-    const auto inShell = [](const std::string& name) {
-        return name.find(' ') == std::string::npos ? name : fmt::format("'{}'", name);
+    const auto inShell = [](const std::string& word) {
+        const bool isPlain = std::all_of(word.begin(), word.end(), [](unsigned char c) {
+            return std::isalnum(c) || c > 127 || c == '_' || c == '-' || c == '.' || c == '/';
+        });
+        return isPlain ? word : fmt::format("\"{}\"", word);
     };
     fmt::print("wrote {0}\nsgm view {1}                     see it and change it\nsgm build {1} -o {2}     build it\n",
                path.string(), inShell(path.string()), inShell(path.stem().string() + ".glb"));

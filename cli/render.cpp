@@ -246,6 +246,16 @@ render::Camera cameraAfter(const RenderRequest& request, render::Camera camera, 
     return camera;
 }
 
+/// The camera with the lamp that the request says, or one that lights a hollow from which a mesh is seen.
+render::Camera withLamp(const RenderRequest& request, const pipeline::Model& model, const Box3f& bounds,
+                        render::Camera camera) {
+    if (request.camera.lamp_m >= 0)
+        camera.lamp_m = request.camera.lamp_m;
+    else if (camera.lamp_m == 0 && drawsMesh(request) && model.derivation.objects.empty())
+        camera.lamp_m = render::lampFor(model.tape, bounds, camera.eye);
+    return camera;
+}
+
 Status drawAll(const RenderRequest& request) {
     auto options = parseSize(request.size);
     if (!options.ok()) return options.error();
@@ -268,15 +278,11 @@ Status drawAll(const RenderRequest& request) {
     }
     const Box3f bounds = model->derivation.objects.empty() ? render::tighten(model->tape, model->lowered->field.bounds)
                                                            : mesh->mesh.bounds();
-    auto camera = cameraFor(request.camera.place, request.turntable > 0, *model, bounds,
-                            static_cast<double>(options->width) / options->height);
+    const auto camera = cameraFor(request.camera.place, request.turntable > 0, *model, bounds,
+                                  static_cast<double>(options->width) / options->height);
     if (!camera.ok()) return camera.error();
     if (!request.print.quiet && request.view != "fog") warnOfEye(*model, *camera, request.camera.place == "inside");
-    if (request.camera.lamp_m >= 0)
-        camera->lamp_m = request.camera.lamp_m;
-    else if (camera->lamp_m == 0 && drawsMesh(request) && model->derivation.objects.empty())
-        camera->lamp_m = render::lampFor(model->tape, bounds, camera->eye);
-    options->camera = *camera;
+    options->camera = withLamp(request, *model, bounds, *camera);
     options->samples = request.samples;
     options->threads = request.grid.threads;
     options->ground = !request.noGround && request.camera.place != "inside";
@@ -289,7 +295,7 @@ Status drawAll(const RenderRequest& request) {
         return drawn;
     }
     for (int i = 0; i < request.turntable; ++i) {
-        options->camera = cameraAfter(request, *camera, i);
+        options->camera = withLamp(request, *model, bounds, cameraAfter(request, *camera, i));
         const auto name = frameName(request.output, i, "--turntable");
         if (const Status s = drawOne(request, *paint, *options, provenance, *name, watch.progress()); !s.ok()) return s;
     }

@@ -51,7 +51,7 @@ Json causeOf(const Model& model, const FloatCause& cause) {
         const Part& part = model.lowered->provenance.parts[origin];
         return Json{{"path", part.path.text()}, {"file", part.file()}, {"line", part.line()}};
     };
-    if (cause.kind == FloatCause::Kind::Thin || cause.kind == FloatCause::Kind::ThinWall)
+    if (cause.kind == FloatCause::Kind::Thin || cause.kind == FloatCause::Kind::Fragment)
         return {
             {"kind", "thin"}, {"thickness_m", cause.width_m}, {"cell_m", cause.cell_m}, {"part", partOf(cause.theirs)}};
     return {{"kind", cause.kind == FloatCause::Kind::Gap ? "gap" : "touch"},

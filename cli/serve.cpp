@@ -71,11 +71,10 @@ void answer(const fs::path& root, const httplib::Request& request, httplib::Resp
 Status serve(const ServeOptions& options) {
     std::error_code failed;
     if (fs::is_regular_file(options.folder, failed))
-        return Error{
-            Error::Kind::Input,
-            fmt::format("'{0}' is a file: serve shows a folder of tiles; run `sgm bake {0} -o FOLDER` and `sgm "
-                        "merge FOLDER` first",
-                        options.folder)};
+        return Error{Error::Kind::Input,
+                     fmt::format("'{}' is a file: serve shows a folder of tiles, as `sgm bake` and `sgm merge` make "
+                                 "them of a grammar",
+                                 options.folder)};
     const fs::path root = fs::canonical(options.folder, failed);
     if (failed || !fs::exists(root / "tileset.json", failed))
         return Error{

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -33,21 +34,27 @@ std::set<std::pair<const syntax::Source*, uint32_t>> sharedJoints(const rules::G
     return places;
 }
 
-/// Whether another newcomer stands before an element in its chain, as far as the text shows.
-bool followsNewcomer(syntax::SourceSpan element) {
-    const std::string_view before = element.source->text().substr(0, element.begin);
-    const size_t begin = before.find_last_of(">{|,");
-    std::string_view chain = begin == std::string_view::npos ? before : before.substr(begin + 1);
-    chain = chain.substr(0, std::min(chain.find_last_of("+-&"), chain.size()));
-    return chain.find("+ ") != std::string_view::npos || chain.find("- ") != std::string_view::npos;
-}
-
-/// What to do about a joint that another shape has closed.
-std::string closedHint(syntax::SourceSpan element) {
-    if (element.text().find(" on ") == std::string_view::npos && followsNewcomer(element))
-        return "write 'on last' to let it grow on the shape before it, choose another joint of ours, 'at free(…)', or "
-               "place it by 'move'";
-    return "choose another joint of ours, 'at free(…)', or place it by 'move'";
+/// The elements, by their places, before which another newcomer stands in their chain, and which don't say on what they
+/// grow.
+std::set<std::pair<const syntax::Source*, uint32_t>> laterNewcomers(const rules::Grammar& grammar) {
+    std::set<std::pair<const syntax::Source*, uint32_t>> places;
+    const auto isNewcomer = [](const rules::Element& e) { return e.op != rules::Operator::None; };
+    const std::function<void(const rules::Body&)> visit = [&](const rules::Body& body) {
+        for (const auto& chain : body.siblings) {
+            bool follows = false;
+            for (const rules::Element& e : chain) {
+                if (follows && isNewcomer(e) && !e.on) places.insert({e.span.source, e.span.begin});
+                follows = follows || isNewcomer(e);
+                rules::forEachInnerBody(e, visit);
+            }
+        }
+    };
+    for (const rules::Start& start : grammar.starts) visit(start.body);
+    for (const rules::Rule& rule : grammar.rules) {
+        visit(rule.body);
+        if (rule.finally_) visit(*rule.finally_);
+    }
+    return places;
 }
 
 }  // namespace
@@ -56,6 +63,8 @@ syntax::Diagnostics ungrown(const Derivation& derivation) {
     syntax::Diagnostics warnings;
     const auto shared = derivation.closed.empty() ? std::set<std::pair<const syntax::Source*, uint32_t>>()
                                                   : sharedJoints(*derivation.grammar);
+    const auto later = derivation.closed.empty() ? std::set<std::pair<const syntax::Source*, uint32_t>>()
+                                                 : laterNewcomers(*derivation.grammar);
     for (const Closed& closed : derivation.closed) {
         const auto isOf = [&](const Shape& s) {
             return s.span.source == closed.span.source && s.span.begin == closed.span.begin &&
@@ -64,11 +73,14 @@ syntax::Diagnostics ungrown(const Derivation& derivation) {
         const auto& shapes = derivation.tree.shapes;
         const bool asksFree = closed.span.text().find("at free") != std::string_view::npos;
         if (std::none_of(shapes.begin(), shapes.end(), isOf))
-            warnings.warning(
-                closed.span,
-                asksFree ? "none of these joints is free any more, so this grows nowhere"
-                         : "another shape has closed its joint, so this grows nowhere",
-                asksFree ? "name more joints in 'free(…)', or place it by 'move'" : closedHint(closed.span));
+            warnings.warning(closed.span,
+                             asksFree ? "none of these joints is free any more, so this grows nowhere"
+                                      : "another shape has closed its joint, so this grows nowhere",
+                             asksFree ? "name more joints in 'free(…)', or place it by 'move'"
+                             : later.contains({closed.span.source, closed.span.begin})
+                                 ? "write 'on last' to let it grow on the shape before it, choose another "
+                                   "joint of ours, 'at free(…)', or place it by 'move'"
+                                 : "choose another joint of ours, 'at free(…)', or place it by 'move'");
         else if (shared.contains({closed.span.source, closed.span.begin}))
             warnings.warning(closed.span,
                              fmt::format("the first of these copies closes the joint that all ask for, so {} grew "

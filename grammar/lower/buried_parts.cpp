@@ -15,6 +15,7 @@ namespace {
 constexpr size_t mostSampled = 12;     ///< parts of an element
 constexpr size_t mostElements = 200;   ///< that are sampled, the first ones
 constexpr int latticeEdge = 9;         ///< points along each axis of a scope; odd, so that its middle lines are met
+constexpr double leastAir = 0.95;      ///< share of the points of what a cut takes away
 constexpr double latticeReach = 0.98;  ///< of a scope's half extent
 
 /// What one element of a rule's body made.
@@ -52,7 +53,7 @@ public:
 
     /// Whether one of at most `mostSampled` parts owns a point of its scope.
     bool anyOwns(std::span<const OriginId> parts, std::span<const derive::Scope> scopes) {
-        counts_.clear();
+        airOf_.clear(), points_ = 0;
         std::vector<Box3f> boxes;
         for (const derive::Scope& scope : scopes) boxes.push_back(derive::boxOf(scope).as<float>());
         std::array<eval::FloatInterval, mostSampled> ranges;
@@ -64,11 +65,14 @@ public:
         }
         return false;
     }
-    /// Whose most points were that the last call looked at.
-    OriginId mostFrequent() const {
-        const auto most = std::max_element(counts_.begin(), counts_.end(),
+    /// Who made air of nearly all points that the last call looked at, and of most of them; 0 where nobody did.
+    OriginId cutter() const {
+        const auto most = std::max_element(airOf_.begin(), airOf_.end(),
                                            [](const auto& a, const auto& b) { return a.second < b.second; });
-        return most == counts_.end() ? 0 : most->first;
+        size_t air = 0;
+        for (const auto& [part, count] : airOf_) air += count;
+        const bool isAir = static_cast<double>(air) >= leastAir * static_cast<double>(points_);
+        return isAir && air > 0 && 2 * most->second > air ? most->first : 0;
     }
 
 private:
@@ -83,14 +87,19 @@ private:
                 }
         std::vector<OriginId> owners(x.size());
         eval::evaluateOrigin(local_, {x.data(), y.data(), z.data(), x.size()}, owners.data(), workspace_);
-        for (const OriginId owner : owners) ++counts_[owner];
+        std::vector<float> values(x.size());
+        eval::evaluate(local_, {x.data(), y.data(), z.data(), x.size()}, values.data(), workspace_);
+        points_ += x.size();
+        for (size_t i = 0; i < x.size(); ++i)
+            if (values[i] > 0) ++airOf_[owners[i]];
         return std::find(owners.begin(), owners.end(), part) != owners.end();
     }
 
     const eval::Tape& tape_;
     eval::Tape local_;
     eval::Workspace workspace_;
-    std::map<OriginId, size_t> counts_;
+    std::map<OriginId, size_t> airOf_;  ///< points in the air, by the part that made it
+    size_t points_ = 0;
 };
 
 /// Which parts the mesh shows, by part.
@@ -136,7 +145,7 @@ Result<std::vector<BuriedParts>> findBuriedParts(const derive::Derivation& deriv
         }
         const auto isAddedHere = [&](OriginId part) { return isAdded(tree, model.shapeOf[part]); };
         if (!std::all_of(some.begin(), some.end(), isAddedHere) || lattice.anyOwns(some, scopes)) continue;
-        const OriginId by = lattice.mostFrequent();
+        const OriginId by = lattice.cutter();
         const derive::ShapeId shape = by == 0 ? derive::none : model.shapeOf[by];
         const bool isCut = shape != derive::none && isCutter(tree, shape);
         found.push_back({element.parts.front(), element.parts.size(), isCut ? by : 0});

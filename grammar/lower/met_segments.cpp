@@ -21,7 +21,8 @@ bool meets(Vec3d from, Vec3d to, Vec3d a, Vec3d b, Vec3d c) {
 
 }  // namespace
 
-std::vector<uint8_t> segmentsThatMeet(const mesh::Mesh& mesh, std::span<const std::array<Vec3f, 2>> segments) {
+std::vector<uint8_t> segmentsThatMeet(const mesh::Mesh& mesh, std::span<const std::array<Vec3f, 2>> segments,
+                                      const Progress* progress) {
     std::vector<uint8_t> met(segments.size(), 0);
     if (segments.empty()) return met;
     std::vector<Box3f> boxes;
@@ -32,7 +33,8 @@ std::vector<uint8_t> segmentsThatMeet(const mesh::Mesh& mesh, std::span<const st
     for (const mesh::Chunk& c : mesh.chunks)
         for (const Vec3f& p : c.positions) positions.push_back(&p);
     std::vector<uint32_t> near;
-    for (const mesh::Chunk& c : mesh.chunks)
+    for (const mesh::Chunk& c : mesh.chunks) {
+        if (cancelled(progress)) break;
         for (const mesh::Triangle& t : c.triangles) {
             const mesh::Triangle corners = c.inMesh(t);
             const Vec3f p = *positions[corners.x], q = *positions[corners.y], r = *positions[corners.z];
@@ -42,6 +44,7 @@ std::vector<uint8_t> segmentsThatMeet(const mesh::Mesh& mesh, std::span<const st
                     met[i] = meets(segments[i][0].as<double>(), segments[i][1].as<double>(), p.as<double>(),
                                    q.as<double>(), r.as<double>());
         }
+    }
     return met;
 }
 

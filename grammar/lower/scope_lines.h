@@ -22,6 +22,15 @@ inline double turnOf(const derive::Scope& scope, int axis) {
     return 1 / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
 }
 
+/// The largest cells that hold a thin scope.
+inline double cellThatHolds(const derive::Scope& scope) {
+    const double least = minComponent(scope.size);
+    double turn = 1;
+    for (int axis = 0; axis < 3; ++axis)
+        if (scope.size[axis] <= 1.01 * least) turn = std::min(turn, turnOf(scope, axis));
+    return least * turn;
+}
+
 /// Where the i-th of n lines passes a half extent: denser towards the ends, for a bar may run through a house and show
 /// these alone; off the middle, so that no line lies in a plane of symmetry.
 inline double shareOf(int i, int n) { return -std::cos(std::numbers::pi * (i + 0.535) / n); }

@@ -158,15 +158,6 @@ private:
     std::vector<Vec3f> inside_, outside_;
 };
 
-/// The largest cells that hold a thin scope.
-double cellThatHolds(const derive::Scope& scope) {
-    const double least = minComponent(scope.size);
-    double turn = 1;
-    for (int axis = 0; axis < 3; ++axis)
-        if (scope.size[axis] <= 1.01 * least) turn = std::min(turn, turnOf(scope, axis));
-    return least * turn;
-}
-
 /// The parts that may lack something, where they stand on hills.
 std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Model& model, double cell,
                                  const std::vector<ThinPart>* among) {

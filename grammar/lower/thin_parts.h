@@ -20,19 +20,20 @@ struct ThinPart {
     double thickness_m = 0;  ///< the least extent of the part's scope, or of its walls or shell; of the wall or gap
     double cell_m = 0;       ///< cells no larger than this hold it
     /// Share of the part's surface without a triangle within half a cell, or of a plate's area; of lines across the
-    /// wall with neither of its surfaces.
+    /// wall or gap with neither of its surfaces.
     double missing = 0;
     std::vector<derive::Scope> places;  ///< where it is
+    bool isShell = false;               ///< of a part: its walls are what is thin
 };
 
 /// Looks at the parts whose scope is somewhere thinner than a cell: on lines through the scope along its thin axes,
 /// where does the field's surface belong to the part, and has the mesh a triangle of the part there? Of a plate that
 /// stands free, does the mesh cover its faces? Likewise at thin walls and narrow gaps at the faces of boxes
-/// (`findThinSections`), and at the walls of shells and beside other cuts (`findMissingWalls`). Those that lack more
-/// than a tenth, ascending by part. What else is thin within a thicker scope, as a needle's point or a fractal's
-/// ornament, isn't looked for. Empty for a mesh without origins. Only those `among` others are looked at, where that
-/// isn't null. About 4,000 evaluations of a shortened tape a thin part, 300 to 20,000 another, O(n log n); `threads` 0:
-/// all. Error::Cancelled.
+/// (`findThinSections`): those that lack more than a tenth; and at the walls of shells and beside other cuts
+/// (`findMissingWalls`). Ascending by part. What else is thin within a thicker scope, as a needle's point or a
+/// fractal's ornament, isn't looked for. Empty for a mesh without origins. Only those `among` others are looked at,
+/// where that isn't null. About 4,000 evaluations of a shortened tape a thin part, 300 to 30,000 another, O(n log n);
+/// `threads` 0: all. Error::Cancelled.
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress,

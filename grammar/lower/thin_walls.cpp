@@ -29,9 +29,9 @@ constexpr std::array depths{0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.7
 constexpr double leaningWall = 1.42;  ///< times a cell: a thicker wall is held as a rule
 constexpr double beyondWall = 0.5;    ///< cells beyond both surfaces of a wall within which a mesh has it
 
-constexpr size_t fewestMissing = 3;  ///< lines across a wall that the mesh lacks: a hole in it is seen
-/// Share of the surface of a shell, and of a cut, that walls are missing from.
-constexpr double leastOfShell = 0.006, leastOfCut = 0.05;
+constexpr size_t fewestMissing = 3;    ///< lines across a wall that the mesh lacks: a hole in it is seen
+constexpr double leastOfCut = 0.05;    ///< share of the surface of a cut that walls are missing from
+constexpr size_t mostPlaces = 100000;  ///< that are told one by one; of further parts their scope is
 /// Times the median: what half of the walls' thicknesses differ by at most. Where two cuts touch or two faces meet in
 /// an edge the solid has any thickness down to none, which no cells hold.
 constexpr double mostSpread = 0.8;
@@ -80,7 +80,7 @@ public:
     void probe(std::span<const WalledPart> parts, std::vector<ThinWalls>& found) {
         std::vector<Box3f> boxes;
         for (const WalledPart& p : parts)
-            boxes.push_back(derive::boxOf(p.scope).inflated(depths.back() * cell_m_).as<float>());
+            boxes.push_back(derive::boxOf(p.scope, lineReach).inflated((depths.back() + 1) * cell_m_).as<float>());
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) { probePart(parts[i], tape, found); });
     }
 
@@ -268,9 +268,10 @@ double wallOf(const derive::SolidValue& solid) {
     return least;
 }
 
-/// Its faces are those of its scope (findThinSections).
-bool isBox(const derive::SolidValue& solid) {
-    return solid.primitive && solid.primitive->convexParts == field::convex::cube;
+/// Whether its faces are those of its scope (findThinSections).
+bool isBox(const derive::SolidValue& solid, const derive::Scope& scope) {
+    return solid.primitive && solid.primitive->convexParts == field::convex::cube &&
+           (solid.primitive->plan == field::PlanUse::None || scope.footprint == derive::none);
 }
 
 /// By shape: whether it takes something away: what is cut from a cut stands.
@@ -296,11 +297,11 @@ std::vector<WalledPart> walledParts(const derive::Derivation& derivation, const 
         if (id == derive::none || !isWanted[part]) continue;
         const derive::Shape& shape = derivation.tree.shapes[id];
         // What is thin as a whole is looked for likewise, but otherwise (findMissingParts).
-        if (shape.solid == derive::none || minComponent(shape.scope.size) < cell_m) continue;
+        if (shape.solid == derive::none || cellThatHolds(shape.scope) < cell_m) continue;
         const derive::SolidValue& solid = derivation.tree.solids[shape.solid];
         const double wall_m = wallOf(solid);
         const bool isShell = wall_m / leaningWall < cell_m;
-        if (!isShell && (!cuts[id] || isBox(solid))) continue;
+        if (!isShell && (!cuts[id] || isBox(solid, shape.scope))) continue;
         walled.push_back({part, derive::liftedScope(derivation, id), isShell ? wall_m : 0});
     }
     return walled;
@@ -308,7 +309,7 @@ std::vector<WalledPart> walledParts(const derive::Derivation& derivation, const 
 
 /// What the mesh lacks of walls, where `isMet` says of each line whether it has any. It may lack them between lines
 /// too: all of them are in its places.
-ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, double cell_m) {
+ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, double cell_m, size_t placesBefore) {
     const bool isShell = walls.of.shell_m > 0;
     ThinPart missing{
         .kind = isShell ? ThinPart::Kind::Part : ThinPart::Kind::Wall, .part = walls.of.part, .places = {}};
@@ -322,8 +323,7 @@ ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, doubl
         thicknesses_m.push_back(line.thickness_m), cells_m.push_back(line.thickness_m * turnOf(line.inward));
     }
     const auto lacked = static_cast<double>(thicknesses_m.size());
-    if (thicknesses_m.size() < fewestMissing ||
-        lacked < (isShell ? leastOfShell : leastOfCut) * static_cast<double>(walls.points))
+    if (thicknesses_m.size() < fewestMissing || (!isShell && lacked < leastOfCut * static_cast<double>(walls.points)))
         return {};
     std::sort(thicknesses_m.begin(), thicknesses_m.end()), std::sort(cells_m.begin(), cells_m.end());
     const auto at = [](const std::vector<double>& sorted, double share) {
@@ -331,9 +331,10 @@ ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, doubl
     };
     missing.thickness_m = at(thicknesses_m, 0.5);
     if (!isShell && at(thicknesses_m, 0.75) - at(thicknesses_m, 0.25) > mostSpread * missing.thickness_m) return {};
-    if (isShell) missing.thickness_m = walls.of.shell_m;
-    missing.missing = lacked / static_cast<double>(walls.lines.size());
-    missing.cell_m = std::min(at(cells_m, 0.1), cell_m / 2);
+    if (isShell) missing.thickness_m = walls.of.shell_m, missing.isShell = true;
+    missing.missing = lacked / static_cast<double>(isShell ? walls.points : walls.lines.size());
+    missing.cell_m = std::min(std::max(at(cells_m, 0.1), 0.5 * walls.of.shell_m), cell_m / 2);
+    if (placesBefore > mostPlaces) missing.places = {walls.of.scope};
     return missing;
 }
 
@@ -358,12 +359,15 @@ Result<std::vector<ThinPart>> findMissingWalls(const derive::Derivation& derivat
             for (const WallLine& line : walls.lines)
                 across.push_back({(line.from - line.inward * (beyondWall * cell)).as<float>(),
                                   (line.from + line.inward * (line.thickness_m + beyondWall * cell)).as<float>()});
-    const std::vector<uint8_t> isMet = segmentsThatMeet(mesh, across);
+    const std::vector<uint8_t> isMet = segmentsThatMeet(mesh, across, progress);
+    if (cancelled(progress)) return cancelledError();
     std::vector<ThinPart> all;
+    size_t places = 0;
     std::span<const uint8_t> rest = isMet;
     for (const std::vector<ThinWalls>& some : found)
         for (const ThinWalls& walls : some) {
-            ThinPart missing = missingOf(walls, rest.first(walls.lines.size()), cell);
+            ThinPart missing = missingOf(walls, rest.first(walls.lines.size()), cell, places);
+            places += missing.places.size();
             if (missing.missing > 0) all.push_back(std::move(missing));
             rest = rest.subspan(walls.lines.size());
         }

@@ -32,7 +32,7 @@ derive::ShapeId beginOf(const Model& model, std::span<const uint32_t> pieceOf, u
 
 /// Whether smaller cells would help.
 bool isOfCells(FloatCause::Kind kind) {
-    return kind == FloatCause::Kind::Touch || kind == FloatCause::Kind::Thin || kind == FloatCause::Kind::ThinWall;
+    return kind == FloatCause::Kind::Touch || kind == FloatCause::Kind::Thin || kind == FloatCause::Kind::Fragment;
 }
 
 }  // namespace

@@ -18,11 +18,11 @@ struct FloatCause {
         Gap,       ///< nothing reaches it
         Touch,     ///< the field joins both, by less than the mesh shows
         Thin,      ///< a part that the mesh lacks holds it
-        ThinWall,  ///< it is a fragment of a wall beside a cut
+        Fragment,  ///< it is a piece of a thin wall, of a shell or beside a cut
     };
     Kind kind = Kind::Unknown;
     double width_m = 0;   ///< of the gap in the mesh; of the thin part or wall
-    double cell_m = 0;    ///< Thin, ThinWall: cells no larger than this show it
+    double cell_m = 0;    ///< Thin, Fragment: cells no larger than this show it
     Vec3d at;             ///< Gap, Touch: between the nearest points
     OriginId ours = 0;    ///< Gap, Touch: the part of the piece that is nearest
     OriginId theirs = 0;  ///< Gap, Touch: the nearest part of anything else. Else the thin part, or the cut
@@ -32,7 +32,7 @@ struct Floating {
     mesh::ConnectedComponent piece;
     derive::ShapeId shape = 0;  ///< where the piece begins in the shape tree
     FloatCause cause;
-    bool besideMissing = false;  ///< what the mesh lacks lies beside it, and may hold it
+    bool besideMissing = false;  ///< what the mesh lacks reaches from it to elsewhere, and may hold it
 };
 struct Support {
     uint64_t pieces = 0;             ///< separate solids

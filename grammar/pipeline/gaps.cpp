@@ -32,6 +32,12 @@ struct Closest {
     uint32_t ours = 0, theirs = 0;  ///< triangles
 };
 
+bool contains(const Box3d& a, const Box3d& b) {
+    for (int i = 0; i < 3; ++i)
+        if (b.lo[i] < a.lo[i] || b.hi[i] > a.hi[i]) return false;
+    return true;
+}
+
 class GapFinder {
 public:
     explicit GapFinder(const mesh::Mesh& mesh) : mesh_(mesh::flatten(mesh, 0)), tree_(mesh_) {
@@ -82,12 +88,6 @@ public:
     }
 
 private:
-    static bool contains(const Box3d& a, const Box3d& b) {
-        for (int i = 0; i < 3; ++i)
-            if (b.lo[i] < a.lo[i] || b.hi[i] > a.hi[i]) return false;
-        return true;
-    }
-
     /// The surface that fills the piece's box.
     const Surface* surfaceOf(const mesh::ConnectedComponent& piece) const {
         const Surface* best = nullptr;
@@ -139,26 +139,27 @@ public:
         for (const lower::ThinPart& part : missing) {
             for (const derive::Scope& place : part.places) places_.push_back(derive::boxOf(place));
             if (part.kind == lower::ThinPart::Kind::Part) missing_.push_back(part);
-            if (part.kind != lower::ThinPart::Kind::Gap && part.face < 0) torn_.push_back(part);
+            if (part.isShell || (part.kind == lower::ThinPart::Kind::Wall && part.face < 0)) addTorn(part);
         }
         for (size_t i = 0; i < missing_.size(); ++i)
             if (shapeOf(i) != derive::none) isMissing_[shapeOf(i)] = true;
     }
 
-    /// Whether something that the mesh lacks lies within a cell of the piece's box.
-    bool lieBeside(const mesh::ConnectedComponent& piece, double cell_m) const {
-        const Box3d around = Box3d{piece.bounds.lo.as<double>(), piece.bounds.hi.as<double>()}.inflated(cell_m);
-        return std::any_of(places_.begin(), places_.end(),
-                           [&](const Box3d& place) { return !intersection(around, place).empty(); });
+    /// Whether something that the mesh lacks reaches from the piece's box to beyond it, and so may hold it.
+    bool leadAway(const mesh::ConnectedComponent& piece, double cell_m) const {
+        const Box3d around = boxOf(piece).inflated(cell_m);
+        return std::any_of(places_.begin(), places_.end(), [&](const Box3d& place) {
+            return !intersection(around, place).empty() && !contains(around, place);
+        });
     }
 
     /// The shell, or wall beside a cut, that the piece is a fragment of; null where it is none.
     const lower::ThinPart* findWhole(const mesh::ConnectedComponent& piece, double cell_m) const {
-        const Box3d around = Box3d{piece.bounds.lo.as<double>(), piece.bounds.hi.as<double>()}.inflated(cell_m);
-        for (const lower::ThinPart& wall : torn_)
-            for (const derive::Scope& place : wall.places)
-                if (around.contains(place.centre)) return &wall;
-        return nullptr;
+        const auto isOf = [&](const TornWall& wall) {
+            return piece.volume_m3 <= wall.most_m3 && contains(wall.box.inflated(cell_m), boxOf(piece));
+        };
+        const auto found = std::find_if(torn_.begin(), torn_.end(), isOf);
+        return found == torn_.end() ? nullptr : &found->part;
     }
 
     /// The thinnest of the missing parts that hold the piece; null where none does.
@@ -199,6 +200,26 @@ public:
 private:
     static constexpr size_t mostPairs = 2'000'000;
 
+    /// A shell, or wall beside a cut, that may be there in fragments.
+    struct TornWall {
+        lower::ThinPart part;
+        Box3d box;
+        double most_m3 = 0;  ///< of a fragment
+    };
+
+    static Box3d boxOf(const mesh::ConnectedComponent& piece) {
+        return {piece.bounds.lo.as<double>(), piece.bounds.hi.as<double>()};
+    }
+
+    void addTorn(const lower::ThinPart& part) {
+        TornWall torn{part, {}, 0};
+        for (const derive::Scope& place : part.places) {
+            torn.box = hull(torn.box, derive::boxOf(place));
+            torn.most_m3 += place.size.x * place.size.y * place.size.z;
+        }
+        torn_.push_back(std::move(torn));
+    }
+
     derive::ShapeId shapeOf(size_t i) const { return model_.lowered->shapeOf[missing_[i].part]; }
     bool touch(derive::ShapeId a, derive::ShapeId b) const {
         return derive::penetration(shapes_[a].scope, shapes_[b].scope) >= -derive::boxSlack_m;
@@ -208,8 +229,8 @@ private:
     const derive::Shapes& shapes_;
     std::vector<lower::ThinPart> missing_;  ///< whole parts
     std::vector<Box3d> places_;             ///< of all
-    std::vector<lower::ThinPart> torn_;     ///< shells and walls that may be there in fragments
-    std::vector<bool> isMissing_;           ///< by shape
+    std::vector<TornWall> torn_;
+    std::vector<bool> isMissing_;  ///< by shape
 };
 
 /// The field around a place, an eighth of a cell apart, and which of its nodes hang together.
@@ -302,12 +323,12 @@ Status findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, cons
     std::optional<GapFinder> gaps;
     for (size_t i = 0; i < std::min(support.floating.size(), mostPieces); ++i) {
         Floating& f = support.floating[i];
-        f.besideMissing = links.lieBeside(f.piece, static_cast<double>(cell_m));
+        f.besideMissing = links.leadAway(f.piece, static_cast<double>(cell_m));
         const lower::ThinPart* thin = links.find(f.piece, static_cast<double>(cell_m));
-        if (!thin) thin = links.findWhole(f.piece, static_cast<double>(cell_m));
+        const bool isFragment = !thin;
+        if (isFragment) thin = links.findWhole(f.piece, static_cast<double>(cell_m));
         if (thin) {
-            const bool isWall = thin->kind == lower::ThinPart::Kind::Wall;
-            f.cause = {isWall ? FloatCause::Kind::ThinWall : FloatCause::Kind::Thin,
+            f.cause = {isFragment ? FloatCause::Kind::Fragment : FloatCause::Kind::Thin,
                        thin->thickness_m,
                        thin->cell_m,
                        {},
@@ -353,13 +374,13 @@ std::string causeText(const Model& model, const FloatCause& cause, float cell_m)
                 "more, or take smaller cells",
                 partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y, at.z, cell_m);
         case FloatCause::Kind::Thin:
-        case FloatCause::Kind::ThinWall: {
+        case FloatCause::Kind::Fragment: {
             const double extent_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
             const std::string part = partText(model, cause.theirs);
             const std::string what =
                 cause.kind == FloatCause::Kind::Thin
                     ? fmt::format("{}, {:.3g} m thick, holds it and", part, cause.width_m)
-                    : fmt::format("it is a fragment of a wall of {:.3g} m beside {}, which", cause.width_m, part);
+                    : fmt::format("it is a fragment of a wall of {:.3g} m of {}, which", cause.width_m, part);
             return fmt::format("{} is thinner than a cell of {:.3g} m: --resolution {} shows it", what, cell_m,
                                static_cast<int>(std::ceil(extent_m / cause.cell_m)));
         }

@@ -79,14 +79,6 @@ bool saysHeight(const Attribute& a) {
     return height && height->units[0] == Unit::Metre;
 }
 
-/// Warns of the size among some attributes of an element of which something else decides the height.
-void findIn(const std::vector<Attribute>& attributes, const std::string& what, syntax::Diagnostics& diagnostics) {
-    for (const Attribute& a : attributes)
-        if (saysHeight(a))
-            diagnostics.warning(a.span, fmt::format("the height of this size does nothing: {}", what),
-                                "write '100%' for it");
-}
-
 }  // namespace
 
 void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
@@ -126,14 +118,20 @@ void findUnusedHeights(const Grammar& grammar, syntax::Diagnostics& diagnostics)
     const auto look = [&](const Element& e) {
         if (e.span.source != grammar.sources[0].get()) return;
         const Solid* solid = e.content.solid();
-        const bool isRoof = solid && solid->primitive && solid->primitive->plan == field::PlanUse::OwnHeight;
+        // Of a roof that nothing joins the height says where its foot stands.
+        const bool isRoof =
+            e.op != Operator::None && solid && solid->primitive && solid->primitive->plan == field::PlanUse::OwnHeight;
         const auto spans = [](const Attribute& a) { return takes(a, syntax::ArgumentType::Point); };
         const bool isSpan = std::any_of(e.attributes.begin(), e.attributes.end(), spans);
         if (!isRoof && !isSpan) return;
         const std::string what = isSpan
                                      ? "'from … to …' says how long the shape is"
                                      : fmt::format("'{}' is as high as its parameters make it", solid->primitive->name);
-        findIn(e.prefix, what, diagnostics), findIn(e.attributes, what, diagnostics);
+        // A size before the shape says what its shares are of as well.
+        for (const Attribute& a : e.attributes)
+            if (saysHeight(a))
+                diagnostics.warning(a.span, fmt::format("the height of this size does nothing: {}", what),
+                                    "write '100%' for it");
     };
     for (const Start& start : grammar.starts) forEachElement(start.body, look);
     for (const Rule& rule : grammar.rules) {

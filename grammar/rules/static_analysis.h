@@ -20,8 +20,8 @@ void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostic
 /// Warns of solids that join the first shape of a start, which has a size, without one of their own: they are 1 m.
 void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 
-/// Warns of heights in sizes that do nothing: roofs are as high as their pitch makes them, shapes between two points as
-/// long as these are apart.
+/// Warns of heights in sizes behind shapes that do nothing: roofs that grow on others are as high as their pitch makes
+/// them, shapes between two points as long as these are apart.
 void findUnusedHeights(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 
 /// Warns of symbols that wait for each other by `after`: nothing decides which comes first. Once a cycle.

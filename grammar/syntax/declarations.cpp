@@ -59,7 +59,9 @@ std::string defaultFirst(const Cursor& cursor, const Name& name) {
 
 /// The line with its choices behind 'of': 'param wall = brick of brick, stone' for 'param wall = brick | stone'.
 std::string choicesBehindOf(const Cursor& cursor, const ParamDecl& param) {
-    const std::string first(cursor.previous(1).kind == Token::Kind::Word ? cursor.text(cursor.previous(1)) : "…");
+    if (!param.choices.empty() || cursor.previous(1).kind != Token::Kind::Word)
+        return "write them with commas, as in 'of brick, stone'";
+    const std::string first(cursor.text(cursor.previous(1)));
     std::string choices = first;
     for (size_t i = 0; cursor.at("|", i) && cursor.peek(i + 1).kind == Token::Kind::Word; i += 2)
         choices += ", " + std::string(cursor.peekText(i + 1));

@@ -2,7 +2,8 @@
 // faces, which meet in a corner where there are three or more.
 // Enters: closed loops of vertices and breaks around cells. Leaves: triangles with labels, new vertices at corners.
 // Assumes breaks that neighbouring cells read from the face they share: so the surface is closed, whatever is done
-// inside a cell. Polygons that fold over are replaced by triangles around a point inside the cell, which never cross.
+// inside a cell. Polygons that fold over are replaced by triangles around a point inside the cell, which never cross;
+// those of several loops are placed so that they don't either, as far as places are found.
 #pragma once
 
 #include <array>

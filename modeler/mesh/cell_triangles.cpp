@@ -8,7 +8,7 @@ namespace sgm::mesh {
 namespace {
 
 constexpr uint32_t mostSmall = 6;      ///< nodes of a polygon whose ears lie beside each other
-constexpr int mostTries = 4096;        ///< places for the middles of fans in one cell
+constexpr int mostTries = 1024;        ///< places for the middles of fans in one cell
 constexpr double leastSquare = 1e-16;  ///< of the sine between a plane and the way to a point beside it
 
 double square(Vec3d v) { return dot(v, v); }

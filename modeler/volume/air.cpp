@@ -72,7 +72,7 @@ void visitSurfaceBeside(const Air& air, uint32_t voxel, const FloatGrid::ConstAc
 /// Replaces clearances, which the sweep finds up to two voxels too small where fronts meet, by distances to points of
 /// the surface: every voxel takes that of the nearest one that a neighbour of less clearance knows (Danielsson,
 /// "Euclidean distance mapping", 1980, in the order of the sweep). O(n log n).
-void refineClearance(Air& air, const FloatGrid::ConstAccessor& sampled, float sign) {
+void refineClearance(Air& air, const FloatGrid::ConstAccessor& sampled, float sign, const Progress* progress) {
     std::vector<uint32_t> order(air.size());
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
@@ -81,7 +81,7 @@ void refineClearance(Air& air, const FloatGrid::ConstAccessor& sampled, float si
     constexpr float unknown = std::numeric_limits<float>::infinity();
     std::vector<Vec3f> nearest(air.size());
     std::vector<float> squared(air.size(), unknown);
-    for (int round = 0; round < 2; ++round)
+    for (int round = 0; round < 2 && !cancelled(progress); ++round)
         for (const uint32_t v : order) {
             const auto take = [&](Vec3f point) {
                 const Vec3f way = point - air.voxels[v].as<float>();
@@ -95,7 +95,8 @@ void refineClearance(Air& air, const FloatGrid::ConstAccessor& sampled, float si
         if (squared[v] < unknown) air.clearance_m[v] = std::sqrt(squared[v]) * air.voxel_m;
 }
 
-void measure(Air& air, const FloatGrid& level, const FloatGrid& distance, const CoordBBox& box, bool hollow) {
+void measure(Air& air, const FloatGrid& level, const FloatGrid& distance, const CoordBBox& box, bool hollow,
+             const Progress* progress) {
     const FloatGrid::ConstAccessor at = distance.getConstAccessor(), sampled = level.getConstAccessor();
     const float sign = hollow ? -1 : 1;
     air.clearance_m.resize(air.size());
@@ -118,7 +119,7 @@ void measure(Air& air, const FloatGrid& level, const FloatGrid& distance, const 
         };
         air.roof_m[i] = rockToward(2), air.floor_m[i] = rockToward(3);
     }
-    refineClearance(air, sampled, sign);
+    refineClearance(air, sampled, sign, progress);
     // A distance can't grow faster than the way: takes away single voxels at the surface that the sweep left far.
     for (size_t i = 0; i < air.size(); ++i)
         for (const uint32_t n : air.next[i])
@@ -155,7 +156,7 @@ Result<Air> airOf(const Volume& level, bool hollow, Progress* progress) {
     link(air);
     tick(progress);
     if (cancelled(progress)) return cancelledError();
-    if (air.size() > 0) measure(air, grid, *distances(grid, *space), box, hollow);
+    if (air.size() > 0) measure(air, grid, *distances(grid, *space), box, hollow, progress);
     tick(progress);
     if (cancelled(progress)) return cancelledError();
     return air;

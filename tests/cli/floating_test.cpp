@@ -93,7 +93,7 @@ TEST_F(Cli, AFragmentOfAThinWallIsNoPieceOverAGap) {
         "start A -> size (34, 5, 3) cube + Tube size (34, 8, 26) at +y\n"
         "rule Tube -> cylinder - cylinder size (100% - .04m, 120%, 100% - .04m)\n");
     const Outcome run = sgm("build " + file + " --resolution 64");
-    EXPECT_NE(run.out.find("m beside 'A/cube/Tube/cylinder/cylinder' (" + file + ":3), which is thinner than a cell"),
+    EXPECT_NE(run.out.find("m of 'A/cube/Tube/cylinder/cylinder' (" + file + ":3), which is thinner than a cell"),
               std::string::npos)
         << run.out;
     EXPECT_EQ(run.out.find("a gap of"), std::string::npos) << run.out;

@@ -37,6 +37,8 @@ TEST(BuriedParts, AreThoseWithinOneOther) {
 TEST(BuriedParts, AreThoseThatACutTakesAway) {
     EXPECT_EQ(buriedIn("start A -> cube size 4 + sphere size 2 move (0, 3m, 0) - cylinder size 5 move (0, 4.5m, 0)"),
               Names{"sphere 1 by cylinder"});
+    EXPECT_EQ(buriedIn("start A -> cube size 10 - sphere size 8 + cube size .3 move (0, 0, 4.3m)"), Names{"cube 1"})
+        << "in the wall beside the cut";
 }
 
 TEST(BuriedParts, AreNoneThatShowSomewhere) {

@@ -56,9 +56,11 @@ TEST(Told, SharesOfAStartInSums) {
 TEST(Told, HeightsThatSomethingElseDecides) {
     const std::string roof =
         "the height of this size does nothing: 'hipRoof' is as high as its parameters make it; write '100%' for it\n";
-    EXPECT_EQ(told("start A -> size (10m, 9m, 12m) hipRoof(35deg)\n"), "2:12 " + roof);
-    EXPECT_EQ(told("start A -> size (9m, 4m, 9m) B\nrule B -> hipRoof size (80%, 3m, 80%)\n"), "3:19 " + roof);
-    EXPECT_EQ(told("start A -> hipRoof size (10m, 100%, 12m), hipRoof size 5m\n"), "");
+    EXPECT_EQ(told("start A -> cube size 9m + hipRoof size (9m, 3m, 9m) at +y\n"), "2:35 " + roof);
+    EXPECT_EQ(told("start A -> cube size 9m + hipRoof size (9m, 100%, 9m) at +y\n"), "");
+    EXPECT_EQ(told("start A -> hipRoof(35deg) size (10m, 9m, 12m), size (10m, 9m, 12m) hipRoof\n"), "")
+        << "it says where the foot stands";
+    EXPECT_EQ(told("start A -> size (1m, 4m, 1m) cylinder from (0, -50%, 0) to (0, 50%, 0)\n"), "");
     EXPECT_EQ(told("start A -> cube from (0, 0, 0) to (3m, 4m, 0) size (.2m, 3m, .2m)\n"),
               "2:47 the height of this size does nothing: 'from … to …' says how long the shape is; write '100%' for "
               "it\n");

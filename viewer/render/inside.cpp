@@ -58,11 +58,11 @@ Stand deepest(const Samples& grid) {
 /// How far one can go in a direction before meeting the surface, metres, or leaving the bounds.
 struct Way {
     float length = 0;
-    bool leaves = false;
+    bool meets = false;
 };
 
-/// By direction. `cell` is that of a grid over the bounds, metres.
-std::vector<Way> freeWays(const eval::Tape& tape, const Box3f& bounds, float cell, const Stand& stand,
+/// By direction. `cell` is that of a grid over the bounds, metres; `slope` the field's steepest.
+std::vector<Way> freeWays(const eval::Tape& tape, const Box3f& bounds, float cell, float slope, const Stand& stand,
                           const std::vector<Vec3f>& directions) {
     std::vector<Way> ways(directions.size());
     std::vector<bool> stopped(directions.size(), false);
@@ -71,9 +71,10 @@ std::vector<Way> freeWays(const eval::Tape& tape, const Box3f& bounds, float cel
         for (size_t i = 0; i < directions.size(); ++i) points.push_back(stand.place + directions[i] * ways[i].length);
         const std::vector<float> values = valuesAt(tape, points);
         for (size_t i = 0; i < directions.size(); ++i) {
-            const float free = stand.side * values[i] / std::max(tape.lipschitz(), 1e-6f);
-            ways[i].leaves = ways[i].leaves || !bounds.contains(points[i]);
-            stopped[i] = stopped[i] || free < 0.1f * cell || ways[i].leaves;
+            if (stopped[i]) continue;
+            const float free = stand.side * values[i] / slope;
+            ways[i].meets = free < 0.1f * cell;
+            stopped[i] = ways[i].meets || !bounds.contains(points[i]);
             if (!stopped[i]) ways[i].length += free;
         }
     }
@@ -92,12 +93,13 @@ Camera inside(const eval::Tape& tape, const Box3f& bounds) {
             const double angle = turn * pi / 24;
             directions.push_back(normalized(Vec3d{std::cos(angle), rise, std::sin(angle)}).as<float>());
         }
-    const std::vector<Way> ways = freeWays(tape, grid.bounds, grid.cell, stand, directions);
+    const float slope = std::max(tape.lipschitz(), 1e-6f);
+    const std::vector<Way> ways = freeWays(tape, grid.bounds, grid.cell, slope, stand, directions);
     const auto longest = std::max_element(ways.begin(), ways.end(),
                                           [](const Way& one, const Way& other) { return one.length < other.length; });
     const Vec3f look = directions[static_cast<size_t>(longest - ways.begin())];
     // Step back from the deepest place, to see the hollow from its edge.
-    const float back = freeWays(tape, grid.bounds, grid.cell, stand, {-look}).front().length;
+    const float back = freeWays(tape, grid.bounds, grid.cell, slope, stand, {-look}).front().length;
     const Vec3f eye = stand.place - look * std::max(0.0f, 0.6f * back - 0.2f * stand.depth);
     Camera camera;
     camera.eye = eye.as<double>();
@@ -109,7 +111,8 @@ Camera inside(const eval::Tape& tape, const Box3f& bounds) {
 
 double lampFor(const eval::Tape& tape, const Box3f& bounds, Vec3d eyeAt) {
     constexpr int directionCount = 96;
-    constexpr double mostOpen = 0.1;  // of the directions
+    constexpr double leastClosed = 0.9;  // of the directions
+    constexpr float steepest = 4;        // slope that is believed: a field that jumps says more
     const Vec3f eye = eyeAt.as<float>();
     if (!bounds.contains(eye)) return 0;
     const Stand stand{eye, valuesAt(tape, {eye})[0], 1};
@@ -121,9 +124,10 @@ double lampFor(const eval::Tape& tape, const Box3f& bounds, Vec3d eyeAt) {
         directions.push_back(Vec3d{r * std::cos(turn), y, r * std::sin(turn)}.as<float>());
     }
     const float cell = maxComponent(bounds.size()) / Samples::edge;
-    const std::vector<Way> ways = freeWays(tape, bounds, cell, stand, directions);
-    const auto open = std::count_if(ways.begin(), ways.end(), [](const Way& way) { return way.leaves; });
-    if (static_cast<double>(open) > mostOpen * directionCount) return 0;
+    const float slope = std::clamp(tape.lipschitz(), 1e-6f, steepest);
+    const std::vector<Way> ways = freeWays(tape, bounds, cell, slope, stand, directions);
+    const auto closed = std::count_if(ways.begin(), ways.end(), [](const Way& way) { return way.meets; });
+    if (static_cast<double>(closed) < leastClosed * directionCount) return 0;
     float longest = 2 * stand.depth;
     for (const Way& way : ways) longest = std::max(longest, way.length);
     return longest;
