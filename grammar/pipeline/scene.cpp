@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "grammar/pipeline/buried.h"
+#include "grammar/pipeline/floating.h"
+#include "grammar/pipeline/gaps.h"
 #include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/missing.h"
@@ -173,6 +175,12 @@ Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest&
         auto buried = buriedWarnings(*model, meshed->mesh, context);
         if (!buried.ok()) return buried.error();
         for (MeshWarning& hidden : *buried) lacks.push_back(std::move(hidden));
+        // What smaller cells would show, or what they hold, is told by what is missing.
+        Support support = supportOf(*model, meshed->mesh, cell_m);
+        if (const Status s = findCauses(*model, meshed->mesh, cell_m, *missing, support, context.progress); !s.ok())
+            return s.error();
+        for (MeshWarning& floats : floatingWarnings(*model, support, cell_m))
+            if (!floats.ofCells) lacks.push_back(std::move(floats));
     }
     mesh::keepOnly(meshed->mesh, request.edits.keep, cell_m, context.threads);
     auto mesh = edited(std::move(meshed->mesh), request.edits, {model->tape, request.meshing.surface, cell_m}, context);

@@ -189,6 +189,17 @@ TEST_F(Cli, PartsThatTheCellsOfAnObjectLackAreTold) {
     EXPECT_EQ(drawn.out.find("--resolution"), std::string::npos) << drawn.out;
 }
 
+TEST_F(Cli, WhatFloatsWithinAnObjectIsTold) {
+    const std::string file = grammar(
+        "start Town -> cube size (40, 4, 40) : G\n"
+        "rule G -> + place House at +y\n"
+        "start House -> cube size (20, 6, 20) + cube size 4 at +y move (0, 1.5m, 0)\n");
+    const std::string out = sgm("build " + file + " -o " + path("a.glb")).out;
+    EXPECT_NE(out.find("'House/cube/cube', made by the start (" + file + ":4) floats: 64 m³"), std::string::npos)
+        << out;
+    EXPECT_NE(out.find("a gap of 1.5 m lies between"), std::string::npos) << out;
+}
+
 TEST_F(Cli, PicturesWarnAtTheCellsThatAreAskedFor) {
     const std::string file = grammar(
         "start A -> cube size (20, 1, 1) + cube size (.05, 2, .05) move (.05, 1, .03)"
