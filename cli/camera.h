@@ -15,7 +15,7 @@ Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipe
                                  double aspect);
 
 /// Tells on stderr when the eye stands within the model's solid, from where walls are seen from their inner sides. Of
-/// objects that are kept apart nothing is known.
+/// objects that are kept apart nothing is known. `isInside`: '--camera inside' chose the place.
 void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool isInside);
 
 }  // namespace sgm::cli

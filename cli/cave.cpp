@@ -136,8 +136,8 @@ Json caveJson(const Cave& cave) {
     if (std::isfinite(cave.narrowest_m())) json["narrowest_m"] = cave.narrowest_m();
     for (size_t k = 0; k < 4; ++k)
         json["floor_m2"][fmt::format("to_{}_deg", Cave::slopeClasses_deg[k])] = cave.floor_m2[k];
-    if (const auto& room = cave.headroom; room.greatest_m > 0)
-        json["headroom_m"] = {{"least", room.least_m}, {"median", room.median_m}, {"greatest", room.greatest_m}};
+    if (const auto& height = cave.headroom; height.greatest_m > 0)
+        json["headroom_m"] = {{"least", height.least_m}, {"median", height.median_m}, {"greatest", height.greatest_m}};
     else
         json["headroom_m"] = nullptr;
     json["walkable"] = {{"area_m2", cave.walkable_m2}, {"parts", cave.walkParts}, {"reachable_m2", cave.reachable_m2}};
@@ -172,9 +172,9 @@ std::string caveTable(const Cave& cave) {
     for (size_t k = 0; k < 4; ++k)
         floor += fmt::format("{}{:.4g} m² to {}°", k ? ", " : "", cave.floor_m2[k], Cave::slopeClasses_deg[k]);
     row("floor", floor);
-    if (const auto& room = cave.headroom; room.greatest_m > 0)
-        row("headroom", fmt::format("{:.2f} m at least, {:.2f} in the middle, {:.2f} at most", room.least_m,
-                                    room.median_m, room.greatest_m));
+    if (const auto& height = cave.headroom; height.greatest_m > 0)
+        row("headroom", fmt::format("{:.2f} m at least, {:.2f} in the middle, {:.2f} at most", height.least_m,
+                                    height.median_m, height.greatest_m));
     else
         row("headroom", "no floor lies under a roof");
     row("walkable", fmt::format("{:.4g} m² in {} part{}, {:.4g} m² of it reachable", cave.walkable_m2, cave.walkParts,

@@ -42,8 +42,8 @@ struct FogRequest {
 
 /// Where the eye stands, and by what light it sees.
 struct CameraRequest {
-    std::string place;   ///< as cameraFor reads it
-    double lamp_m = -1;  ///< reach of a lamp beside the eye; negative: one where a mesh is seen from a hollow
+    std::string place;             ///< as cameraFor reads it
+    std::optional<double> lamp_m;  ///< reach of a lamp beside the eye; none: one where a mesh is seen from a hollow
 };
 
 struct RenderRequest {
@@ -249,8 +249,8 @@ render::Camera cameraAfter(const RenderRequest& request, render::Camera camera, 
 /// The camera with the lamp that the request says, or one that lights a hollow from which a mesh is seen.
 render::Camera withLamp(const RenderRequest& request, const pipeline::Model& model, const Box3f& bounds,
                         render::Camera camera) {
-    if (request.camera.lamp_m >= 0)
-        camera.lamp_m = request.camera.lamp_m;
+    if (request.camera.lamp_m)
+        camera.lamp_m = *request.camera.lamp_m;
     else if (camera.lamp_m == 0 && drawsMesh(request) && model.derivation.objects.empty())
         camera.lamp_m = render::lampFor(model.tape, bounds, camera.eye);
     return camera;
@@ -362,8 +362,7 @@ void addRender(CLI::App& app, int& exitCode) {
     command
         ->add_option("--lamp", request->camera.lamp_m,
                      "Reach of a warm lamp beside the eye in metres, 0 for none; by default one lights hollows from "
-                     "which a mesh "
-                     "is seen, and what --camera inside shows")
+                     "which a mesh is seen, and what --camera inside shows")
         ->check(CLI::Range(0.0, 1e6));
     command
         ->add_option("--aov", request->layers,

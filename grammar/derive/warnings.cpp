@@ -61,10 +61,8 @@ std::set<std::pair<const syntax::Source*, uint32_t>> laterNewcomers(const rules:
 
 syntax::Diagnostics ungrown(const Derivation& derivation) {
     syntax::Diagnostics warnings;
-    const auto shared = derivation.closed.empty() ? std::set<std::pair<const syntax::Source*, uint32_t>>()
-                                                  : sharedJoints(*derivation.grammar);
-    const auto later = derivation.closed.empty() ? std::set<std::pair<const syntax::Source*, uint32_t>>()
-                                                 : laterNewcomers(*derivation.grammar);
+    if (derivation.closed.empty()) return warnings;
+    const auto shared = sharedJoints(*derivation.grammar), later = laterNewcomers(*derivation.grammar);
     for (const Closed& closed : derivation.closed) {
         const auto isOf = [&](const Shape& s) {
             return s.span.source == closed.span.source && s.span.begin == closed.span.begin &&

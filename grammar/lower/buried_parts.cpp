@@ -7,6 +7,7 @@
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
+#include "grammar/lower/cutters.h"
 #include "modeler/eval/evaluate.h"
 
 namespace sgm::lower {
@@ -36,14 +37,6 @@ bool isAdded(const derive::ShapeTree& tree, derive::ShapeId shape) {
             if (tree.shapes[next].op == rules::Operator::Morph || tree.shapes[next].blend_m > 0) return false;
     }
     return true;
-}
-
-/// Whether a shape takes something away: what is cut from a cut stands.
-bool isCutter(const derive::ShapeTree& tree, derive::ShapeId shape) {
-    bool cuts = false;
-    for (; shape != derive::none; shape = tree.shapes[shape].parent)
-        cuts = cuts != (tree.shapes[shape].op == rules::Operator::Difference);
-    return cuts;
 }
 
 /// Whether the field at points of each scope belongs to its part.
@@ -132,6 +125,7 @@ Result<std::vector<BuriedParts>> findBuriedParts(const derive::Derivation& deriv
     std::sort(hidden.begin(), hidden.end(),
               [](const ElementParts& a, const ElementParts& b) { return a.parts[0] < b.parts[0]; });
     hidden.resize(std::min(hidden.size(), mostElements));
+    const std::vector<bool> cuts = cutters(tree.shapes);
     Lattice lattice(tape);
     std::vector<BuriedParts> found;
     for (const ElementParts& element : hidden) {
@@ -147,7 +141,7 @@ Result<std::vector<BuriedParts>> findBuriedParts(const derive::Derivation& deriv
         if (!std::all_of(some.begin(), some.end(), isAddedHere) || lattice.anyOwns(some, scopes)) continue;
         const OriginId by = lattice.cutter();
         const derive::ShapeId shape = by == 0 ? derive::none : model.shapeOf[by];
-        const bool isCut = shape != derive::none && isCutter(tree, shape);
+        const bool isCut = shape != derive::none && cuts[shape];
         found.push_back({element.parts.front(), element.parts.size(), isCut ? by : 0});
     }
     return found;

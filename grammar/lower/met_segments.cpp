@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "grammar/lower/mesh_positions.h"
 #include "modeler/mesh/box_finder.h"
 
 namespace sgm::lower {
@@ -28,10 +29,7 @@ std::vector<uint8_t> segmentsThatMeet(const mesh::Mesh& mesh, std::span<const st
     std::vector<Box3f> boxes;
     for (const auto& [from, to] : segments) boxes.push_back(hull(Box3f{from, from}, to));
     const mesh::BoxFinder finder(boxes);
-    std::vector<const Vec3f*> positions;
-    positions.reserve(mesh.vertexCount());
-    for (const mesh::Chunk& c : mesh.chunks)
-        for (const Vec3f& p : c.positions) positions.push_back(&p);
+    const std::vector<const Vec3f*> positions = positionsOf(mesh);
     std::vector<uint32_t> near;
     for (const mesh::Chunk& c : mesh.chunks) {
         if (cancelled(progress)) break;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "grammar/lower/mesh_positions.h"
 #include "grammar/lower/scope_lines.h"
 
 namespace sgm::lower {
@@ -21,10 +22,7 @@ Presence::Presence(const mesh::Mesh& mesh, std::span<const Extent> extents, std:
             if (key != last[corner]) around.insert(key);
             last[corner] = key;
         }
-    std::vector<const Vec3f*> positions;
-    positions.reserve(mesh.vertexCount());
-    for (const mesh::Chunk& c : mesh.chunks)
-        for (const Vec3f& p : c.positions) positions.push_back(&p);
+    const std::vector<const Vec3f*> positions = positionsOf(mesh);
     for (const mesh::Chunk& c : mesh.chunks)
         for (size_t t = 0; t < c.origins.size(); ++t) {
             if (extents[c.origins[t]] == Extent::Nothing) continue;

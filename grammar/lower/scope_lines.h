@@ -15,12 +15,12 @@ inline constexpr double lineReach = 1.02;              ///< of a scope's half ex
 
 inline Vec3d alongAxis(int axis) { return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}; }
 
-/// Cells up to this size, times the thickness, hold a plate across an axis of the scope, however it is turned: along
-/// the world's axes a sample lies in whatever is as thick as a cell.
-inline double turnOf(const derive::Scope& scope, int axis) {
-    const Vec3d d = scope.axes * alongAxis(axis);
-    return 1 / (std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
-}
+/// Cells up to this size, times the thickness, hold a wall across a unit direction, however that lies: along the
+/// world's axes a sample lies in whatever is as thick as a cell.
+inline double turnOf(Vec3d across) { return 1 / (std::abs(across.x) + std::abs(across.y) + std::abs(across.z)); }
+
+/// The same for a plate across an axis of the scope.
+inline double turnOf(const derive::Scope& scope, int axis) { return turnOf(scope.axes * alongAxis(axis)); }
 
 /// The largest cells that hold a thin scope.
 inline double cellThatHolds(const derive::Scope& scope) {

@@ -8,6 +8,7 @@
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
 #include "grammar/lower/local_tapes.h"
+#include "grammar/lower/mesh_positions.h"
 #include "grammar/lower/presence.h"
 #include "grammar/lower/scope_lines.h"
 #include "grammar/lower/thin_sections.h"
@@ -57,10 +58,7 @@ void measureFacing(const mesh::Mesh& mesh, std::span<Candidate> parts, size_t pa
     std::vector<Candidate*> of(partCount, nullptr);
     for (Candidate& c : parts)
         if (c.plateAxis >= 0) of[c.part] = &c;
-    std::vector<const Vec3f*> positions;
-    positions.reserve(mesh.vertexCount());
-    for (const mesh::Chunk& c : mesh.chunks)
-        for (const Vec3f& p : c.positions) positions.push_back(&p);
+    const std::vector<const Vec3f*> positions = positionsOf(mesh);
     for (const mesh::Chunk& c : mesh.chunks)
         for (size_t t = 0; t < c.origins.size(); ++t) {
             Candidate* const plate = of[c.origins[t]];

@@ -8,6 +8,7 @@
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
+#include "grammar/lower/cutters.h"
 #include "grammar/lower/local_tapes.h"
 #include "grammar/lower/met_segments.h"
 #include "grammar/lower/scope_lines.h"
@@ -56,9 +57,6 @@ struct ThinWalls {
     std::vector<WallLine> lines;
 };
 
-/// Times a thickness: the largest cells that hold a wall which faces that way, however it lies.
-double turnOf(Vec3d n) { return 1 / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)); }
-
 /// Axes of which z lies along a unit vector.
 Mat3 axesAlong(Vec3d z) {
     const Vec3d x = normalized(cross(std::abs(z.y) < 0.7 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0}, z));
@@ -85,8 +83,8 @@ public:
     }
 
 private:
-    /// A point on the way along a line.
-    struct Walker {
+    /// A line, and how far along it the field has been followed.
+    struct Ray {
         Vec3d from, along;
         double at_m = 0, end_m = 0;
         float value = 0;
@@ -105,7 +103,7 @@ private:
 
     /// Lines along the scope's axes, as far as they lie in the bounds. Returns how far apart they are at most.
     double listLines(const derive::Scope& scope) {
-        walkers_.clear();
+        rays_.clear();
         double spacing_m = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -140,7 +138,7 @@ private:
             const double toLow = low / along[axis], toHigh = high / along[axis];
             begin = std::max(begin, std::min(toLow, toHigh)), end = std::min(end, std::max(toLow, toHigh));
         }
-        if (begin < end) walkers_.push_back({from, along, begin, end, 0});
+        if (begin < end) rays_.push_back({from, along, begin, end, 0});
     }
 
     /// Leaves in `surface_` where lines cross the field's surface: each step is about as long as the field says.
@@ -148,28 +146,28 @@ private:
         surface_.clear();
         const auto placeAll = [&] {
             points_.clear();
-            for (const Walker& w : walkers_) points_.add(w.place().as<float>());
+            for (const Ray& ray : rays_) points_.add(ray.place().as<float>());
             evaluate(tape);
         };
         const float share = stepShare / std::clamp(tape.lipschitz(), 1.0f, steepest);
         placeAll();
-        for (size_t i = 0; i < walkers_.size(); ++i) walkers_[i].value = values_[i];
-        for (int step = 0; step < mostSteps && !walkers_.empty(); ++step) {
+        for (size_t i = 0; i < rays_.size(); ++i) rays_[i].value = values_[i];
+        for (int step = 0; step < mostSteps && !rays_.empty(); ++step) {
             std::vector<Vec3d> before;
-            for (Walker& w : walkers_) {
-                before.push_back(w.place());
-                const auto far_m = static_cast<double>(share * std::abs(w.value));
-                w.at_m = std::min(w.at_m + std::max(far_m, leastStep * cell_m_), w.end_m);
+            for (Ray& ray : rays_) {
+                before.push_back(ray.place());
+                const auto far_m = static_cast<double>(share * std::abs(ray.value));
+                ray.at_m = std::min(ray.at_m + std::max(far_m, leastStep * cell_m_), ray.end_m);
             }
             placeAll();
             size_t kept = 0;
-            for (size_t i = 0; i < walkers_.size(); ++i) {
-                Walker w = walkers_[i];
-                if ((w.value < 0) != (values_[i] < 0)) surface_.push_back({before[i], w.place()});
-                w.value = values_[i];
-                if (w.at_m < w.end_m) walkers_[kept++] = w;
+            for (size_t i = 0; i < rays_.size(); ++i) {
+                Ray ray = rays_[i];
+                if ((ray.value < 0) != (values_[i] < 0)) surface_.push_back({before[i], ray.place()});
+                ray.value = values_[i];
+                if (ray.at_m < ray.end_m) rays_[kept++] = ray;
             }
-            walkers_.resize(kept);
+            rays_.resize(kept);
         }
         halve(surface_, tape);
     }
@@ -251,7 +249,7 @@ private:
     LocalTapes tapes_;
     Box3f bounds_;
     double cell_m_;
-    std::vector<Walker> walkers_;
+    std::vector<Ray> rays_;
     std::vector<Bracket> surface_;
     PointList points_;
     std::vector<float> values_;
@@ -272,16 +270,6 @@ double wallOf(const derive::SolidValue& solid) {
 bool isBox(const derive::SolidValue& solid, const derive::Scope& scope) {
     return solid.primitive && solid.primitive->convexParts == field::convex::cube &&
            (solid.primitive->plan == field::PlanUse::None || scope.footprint == derive::none);
-}
-
-/// By shape: whether it takes something away: what is cut from a cut stands.
-std::vector<bool> cutters(const derive::Shapes& shapes) {
-    std::vector<bool> cut(shapes.size());
-    for (derive::ShapeId s = 0; s < shapes.size(); ++s) {
-        const bool around = shapes[s].parent != derive::none && cut[shapes[s].parent];
-        cut[s] = around != (shapes[s].op == rules::Operator::Difference);
-    }
-    return cut;
 }
 
 std::vector<WalledPart> walledParts(const derive::Derivation& derivation, const Model& model, double cell_m,

@@ -134,19 +134,20 @@ private:
 /// Follows boxes that touch from a floating piece through parts that the mesh lacks to something else.
 class ThinLinks {
 public:
+    /// `missing` has to stay.
     ThinLinks(const Model& model, const std::vector<lower::ThinPart>& missing)
         : model_(model), shapes_(model.derivation.tree.shapes), isMissing_(shapes_.size(), false) {
         for (const lower::ThinPart& part : missing) {
             for (const derive::Scope& place : part.places) places_.push_back(derive::boxOf(place));
             if (part.kind == lower::ThinPart::Kind::Part) missing_.push_back(part);
-            if (part.isShell || (part.kind == lower::ThinPart::Kind::Wall && part.face < 0)) addTorn(part);
+            if (part.isShell || (part.kind == lower::ThinPart::Kind::Wall && part.face < 0)) addFragmented(part);
         }
         for (size_t i = 0; i < missing_.size(); ++i)
             if (shapeOf(i) != derive::none) isMissing_[shapeOf(i)] = true;
     }
 
     /// Whether something that the mesh lacks reaches from the piece's box to beyond it, and so may hold it.
-    bool leadAway(const mesh::ConnectedComponent& piece, double cell_m) const {
+    bool reachBeyond(const mesh::ConnectedComponent& piece, double cell_m) const {
         const Box3d around = boxOf(piece).inflated(cell_m);
         return std::any_of(places_.begin(), places_.end(), [&](const Box3d& place) {
             return !intersection(around, place).empty() && !contains(around, place);
@@ -154,12 +155,12 @@ public:
     }
 
     /// The shell, or wall beside a cut, that the piece is a fragment of; null where it is none.
-    const lower::ThinPart* findWhole(const mesh::ConnectedComponent& piece, double cell_m) const {
-        const auto isOf = [&](const TornWall& wall) {
+    const lower::ThinPart* findWallOf(const mesh::ConnectedComponent& piece, double cell_m) const {
+        const auto isOf = [&](const FragmentedWall& wall) {
             return piece.volume_m3 <= wall.most_m3 && contains(wall.box.inflated(cell_m), boxOf(piece));
         };
-        const auto found = std::find_if(torn_.begin(), torn_.end(), isOf);
-        return found == torn_.end() ? nullptr : &found->part;
+        const auto found = std::find_if(fragmented_.begin(), fragmented_.end(), isOf);
+        return found == fragmented_.end() ? nullptr : found->part;
     }
 
     /// The thinnest of the missing parts that hold the piece; null where none does.
@@ -201,8 +202,8 @@ private:
     static constexpr size_t mostPairs = 2'000'000;
 
     /// A shell, or wall beside a cut, that may be there in fragments.
-    struct TornWall {
-        lower::ThinPart part;
+    struct FragmentedWall {
+        const lower::ThinPart* part = nullptr;
         Box3d box;
         double most_m3 = 0;  ///< of a fragment
     };
@@ -211,13 +212,13 @@ private:
         return {piece.bounds.lo.as<double>(), piece.bounds.hi.as<double>()};
     }
 
-    void addTorn(const lower::ThinPart& part) {
-        TornWall torn{part, {}, 0};
+    void addFragmented(const lower::ThinPart& part) {
+        FragmentedWall wall{&part, {}, 0};
         for (const derive::Scope& place : part.places) {
-            torn.box = hull(torn.box, derive::boxOf(place));
-            torn.most_m3 += place.size.x * place.size.y * place.size.z;
+            wall.box = hull(wall.box, derive::boxOf(place));
+            wall.most_m3 += place.size.x * place.size.y * place.size.z;
         }
-        torn_.push_back(std::move(torn));
+        fragmented_.push_back(wall);
     }
 
     derive::ShapeId shapeOf(size_t i) const { return model_.lowered->shapeOf[missing_[i].part]; }
@@ -229,7 +230,7 @@ private:
     const derive::Shapes& shapes_;
     std::vector<lower::ThinPart> missing_;  ///< whole parts
     std::vector<Box3d> places_;             ///< of all
-    std::vector<TornWall> torn_;
+    std::vector<FragmentedWall> fragmented_;
     std::vector<bool> isMissing_;  ///< by shape
 };
 
@@ -323,10 +324,10 @@ Status findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, cons
     std::optional<GapFinder> gaps;
     for (size_t i = 0; i < std::min(support.floating.size(), mostPieces); ++i) {
         Floating& f = support.floating[i];
-        f.besideMissing = links.leadAway(f.piece, static_cast<double>(cell_m));
+        f.besideMissing = links.reachBeyond(f.piece, static_cast<double>(cell_m));
         const lower::ThinPart* thin = links.find(f.piece, static_cast<double>(cell_m));
         const bool isFragment = !thin;
-        if (isFragment) thin = links.findWhole(f.piece, static_cast<double>(cell_m));
+        if (isFragment) thin = links.findWallOf(f.piece, static_cast<double>(cell_m));
         if (thin) {
             f.cause = {isFragment ? FloatCause::Kind::Fragment : FloatCause::Kind::Thin,
                        thin->thickness_m,
