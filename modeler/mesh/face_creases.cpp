@@ -3,35 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modeler/mesh/face_axes.h"
 #include "modeler/mesh/region.h"
 
 namespace sgm::mesh {
 namespace {
 
-constexpr int probeRounds = 5;     ///< times that both sides of a crease are looked at
-constexpr size_t borderParts = 4;  ///< of a border's bracket, one of which is the next: few rounds fill vectors
-constexpr int borderRounds = 6;    ///< 4^-6 of a segment is left
-constexpr int mostSplits = 3;      ///< pieces found between the ends of a segment
+constexpr int probeRounds = 5;  ///< times that both sides of a crease are looked at
 constexpr float probeShare = 0.0625f;
 constexpr float settledShare = 1e-4f;       ///< of a cell, within which a crease point may still move
 constexpr float endMargin = 0x1.0p-12f;     ///< of a segment, kept free of breaks at its ends
-constexpr float mergedShare = 0x1.0p-8f;    ///< of a cell, within which two breaks are one
 constexpr double monotoneShare = 0x1.0p-6;  ///< of a segment, between breaks
 constexpr float faceMargin = 0x1.0p-7f;     ///< of a cell, kept free of breaks at the sides of a face
-constexpr double gapMargin = 0x1.0p-7;      ///< of the line between a gap's ends, kept free of its break
-constexpr float parallel = 1e-3f;           ///< sine of the least angle between two lines that cross
 constexpr double parallelSquare = 1e-3;     ///< squared sine of the least angle of a crease outside its face
 constexpr double leavingReach = 2.0;        ///< of a cell, that a crossing may lie outside its face
 constexpr double stopShare = 0x1p-10;       ///< of a cell, between a crossing and the piece that ends its crease
 constexpr float confirmShare = 0.0625f;     ///< of a cell times the slope: the field beside a confirmed crossing
-
-/// The two axes of a face.
-struct FaceAxes {
-    int u, v;
-    explicit FaceAxes(int axis) : u((axis + 1) % 3), v((axis + 2) % 3) {}
-    double dot(Vec3f g, Vec3f d) const { return double{g[u]} * d[u] + double{g[v]} * d[v]; }
-    double length(Vec3f g) const { return std::sqrt(dot(g, g)); }
-};
 
 /// A point of the piece's plane, from one where the piece's field has a value.
 PiecePoint onSurface(PiecePoint point, float value) {
@@ -40,10 +27,6 @@ PiecePoint onSurface(PiecePoint point, float value) {
     if (square > 0) point.at = (point.at.as<double>() - g * (value / square)).as<float>();
     return point;
 }
-
-Vec3f between(Vec3f a, Vec3f b, double share) { return (a.as<double>() + (b - a).as<double>() * share).as<float>(); }
-
-double shareOfPart(size_t k) { return static_cast<double>(k) / static_cast<double>(borderParts); }
 
 }  // namespace
 
@@ -71,7 +54,7 @@ uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Wor
         size_t sample = 0;
         for (const uint32_t g : open_) {
             const size_t first = sample;
-            sample += gaps_[g].state == State::Border ? borderParts - 1 : 2;
+            sample += samplesOf(gaps_[g].state);
             take(segments[gaps_[g].segment], g, first);
             if (gaps_[g].state != State::Done) next_.push_back(g);
         }
@@ -125,7 +108,7 @@ bool FaceCreases::moveBeforeThird(Gap& gap, const PiecePoint& third, float value
     const Vec3d along = normalized(cross(gap.lineA.gradient.as<double>(), gap.lineB.gradient.as<double>()));
     const Vec3d slope = third.gradient.as<double>();
     const double rise = dot(slope, along);
-    if (!(std::abs(rise) > parallel * length(slope))) return false;
+    if (!(std::abs(rise) > parallelSine * length(slope))) return false;
     const double there = value + dot(slope, (gap.crossing - third.at).as<double>());
     const double way = -there / rise, cell = grid_->cell_m;  // from the crossing to the end
     const double before = stopShare * cell / (1 + std::abs(way) / cell);
@@ -143,7 +126,7 @@ void FaceCreases::ask(const FaceSegment& segment, const Gap& gap) {
             add(between(gap.at, gap.a.at, probeShare)), add(between(gap.at, gap.b.at, probeShare));
             break;
         default:
-            for (size_t k = 1; k < borderParts; ++k) add(between(gap.lineA.at, gap.lineB.at, shareOfPart(k)));
+            askForBorder(segment, gap);
     }
 }
 
@@ -157,7 +140,7 @@ void FaceCreases::take(const FaceSegment& segment, uint32_t gap, size_t sample) 
         case State::Crease:
             return takeProbes(segment, gap, sample);
         default:
-            return takeParts(segment, gap, sample);
+            return takeBorder(segment, gap, sample);
     }
 }
 
@@ -172,21 +155,12 @@ void FaceCreases::takeEnds(const FaceSegment& segment, Gap& gap, const PiecePoin
 
 /// Goes to where the two pieces' lines cross, or looks for a border where they don't.
 void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
-    const FaceAxes plane(segment.axis);
-    const Vec3f ga = gap.lineA.gradient, gb = gap.lineB.gradient;
-    const double la = plane.length(ga), lb = plane.length(gb);
-    const double det = double{ga[plane.u]} * gb[plane.v] - double{ga[plane.v]} * gb[plane.u];
     const bool first = gap.state == State::Ends;
-    if (!(std::abs(det) > parallel * la * lb)) {
-        if (first) projectOntoCrease(gap, between(gap.a.at, gap.b.at, 0.5));
-        return searchBorder(gap);
-    }
-    // g · (p − q) + f = 0 for both.
-    const double ra = plane.dot(ga, gap.lineA.at) - gap.valueA, rb = plane.dot(gb, gap.lineB.at) - gap.valueB;
     const Vec3f before = gap.at;
-    gap.at = gap.a.at;
-    gap.at[plane.u] = static_cast<float>((ra * gb[plane.v] - rb * ga[plane.v]) / det);
-    gap.at[plane.v] = static_cast<float>((rb * ga[plane.u] - ra * gb[plane.u]) / det);
+    if (!crossInFace(FaceAxes(segment.axis), {gap.lineA, gap.valueA}, {gap.lineB, gap.valueB}, gap.at)) {
+        if (first) projectOntoCrease(gap, between(gap.a.at, gap.b.at, 0.5));
+        return searchBorder(gap, first && !gap.leaves);
+    }
     gap.crossing = gap.at;
     gap.leaves = false;
     if (!mayLieAt(segment, gap.at)) {
@@ -242,67 +216,6 @@ void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t samp
     }
     if (!known || gap.rounds >= probeRounds) return searchBorder(gap);
     aim(segment, gap);
-}
-
-void FaceCreases::searchBorder(Gap& gap) {
-    gap.state = State::Border;
-    gap.rounds = 0;
-    gap.lineA = gap.a, gap.lineB = gap.b;
-    gap.valueA = gap.valueB = 0;
-}
-
-/// A point of a border's bracket, on the surface where that is at most so many metres away; on the line, with the
-/// piece before it, where the field isn't known.
-PiecePoint FaceCreases::inBracket(const FaceSegment& segment, const PiecePoint& before, double most,
-                                  size_t sample) const {
-    float value;
-    PiecePoint point = samples_.point(sample, value);
-    if (!isKnown(value)) {
-        const Vec3f at = point.at;
-        point = before;
-        point.at = at;
-        return point;
-    }
-    const FaceAxes plane(segment.axis);
-    const double square = plane.dot(point.gradient, point.gradient);
-    if (square > 0 && std::abs(value) <= most * std::sqrt(square)) {
-        point.at[plane.u] -= static_cast<float>(value * point.gradient[plane.u] / square);
-        point.at[plane.v] -= static_cast<float>(value * point.gradient[plane.v] / square);
-    }
-    return point;
-}
-
-/// The bracket becomes that part of itself where the first piece ends.
-void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sample) {
-    Gap& gap = gaps_[g];
-    const double bracket = length((gap.lineB.at - gap.lineA.at).as<double>());
-    for (size_t k = 1; k < borderParts; ++k) {
-        const double most = shareOfPart(std::min(k, borderParts - k)) * bracket;
-        const PiecePoint point = inBracket(segment, gap.lineA, most, sample + k - 1);
-        if (point.label == gap.a.label) {
-            gap.lineA = point;
-            continue;
-        }
-        if (point.label != gap.b.label && gap.splits < mostSplits && mayLieAt(segment, point.at))
-            return split(g, point);
-        if (point.label == gap.b.label)
-            gap.lineB = point;
-        else
-            gap.lineB.at = point.at;
-        break;
-    }
-    if (++gap.rounds < borderRounds) return;
-    const Vec3f found = between(gap.lineA.at, gap.lineB.at, 0.5);
-    gap.at = mayLieAt(segment, found) ? found : onLine(gap, found);
-    if (!gap.leaves) gap.crossing = found, gap.leaves = true;
-    gap.state = State::Done;
-}
-
-/// The point nearest to `p` on the line between a gap's ends, a little away from both: it always lies in the face.
-Vec3f FaceCreases::onLine(const Gap& gap, Vec3f p) {
-    const Vec3d way = (gap.b.at - gap.a.at).as<double>();
-    const double share = dot((p - gap.a.at).as<double>(), way) / std::max(dot(way, way), 1e-300);
-    return between(gap.a.at, gap.b.at, std::clamp(share, gapMargin, 1 - gapMargin));
 }
 
 /// A third piece lies between the two.

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "modeler/mesh/piece_samples.h"
+#include "modeler/mesh/face_axes.h"
 
 namespace sgm::mesh {
 
@@ -38,16 +38,20 @@ public:
     const std::vector<Break>& breaks() const { return breaks_; }
 
 private:
-    enum class State : uint8_t { Ends, Crease, Border, Done };
+    static constexpr int mostSplits = 3;             ///< pieces found between the ends of a segment
+    static constexpr float mergedShare = 0x1.0p-8f;  ///< of a cell, within which two breaks are one
+    enum class State : uint8_t { Ends, Crease, Below, Beside, Border, Done };
     /// Two neighbouring pieces of a segment, and the search for the point between them.
     struct Gap {
         uint32_t segment = 0;
         int32_t next = -1;  ///< the gap after it on the segment
         State state = State::Ends;
         uint8_t rounds = 0, splits = 0;
-        PiecePoint a, b;          ///< where the pieces are known
-        PiecePoint lineA, lineB;  ///< where their fields were looked at last, nearer to the crease
+        uint8_t looks = 0, looked = 0;  ///< below a border that are left, and beside it that were taken
+        PiecePoint a, b;                ///< where the pieces are known
+        PiecePoint lineA, lineB;        ///< where their fields were looked at last, nearer to the crease
         float valueA = 0, valueB = 0;
+        LinearField wall;  ///< between two parts, looked at below the surface
         Vec3f at;
         Vec3f crossing;       ///< of the two lines, before it was moved into the face
         bool leaves = false;  ///< the crossing lies outside the face, and both pieces were found there
@@ -60,7 +64,13 @@ private:
     void takeParts(const FaceSegment& segment, uint32_t gap, size_t sample);
     void aim(const FaceSegment& segment, Gap& gap);
     void projectOntoCrease(Gap& gap, Vec3f from) const;
-    void searchBorder(Gap& gap);
+    static size_t samplesOf(State state);
+    static void searchBorder(Gap& gap, bool isFlat = false);
+    void askForBorder(const FaceSegment& segment, const Gap& gap);
+    void takeBorder(const FaceSegment& segment, uint32_t gap, size_t sample);
+    bool takeBelow(const FaceSegment& segment, Gap& gap, size_t sample);
+    bool takeBeside(const FaceSegment& segment, Gap& gap, size_t sample);
+    bool meetWall(const FaceSegment& segment, Gap& gap, const LinearField& surface) const;
     uint64_t confirmCrossings(const std::vector<FaceSegment>& segments, eval::Workspace& workspace);
     bool moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const;
     void split(uint32_t gap, const PiecePoint& between);

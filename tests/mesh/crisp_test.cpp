@@ -159,20 +159,26 @@ TEST(Crisp, VerticesKeptInTheirCellsAreReleased) {
     EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects);
 }
 
-/// Sum of the lengths of edges between two origins.
-double borderLength(const Mesh& mesh) {
+/// Ends of the edges between two origins, each edge once.
+std::vector<std::pair<Vec3f, Vec3f>> borderEdges(const Mesh& mesh) {
     std::vector<Vec3f> at;
     for (const Chunk& c : mesh.chunks) at.insert(at.end(), c.positions.begin(), c.positions.end());
     std::map<std::pair<uint32_t, uint32_t>, OriginId> half;
-    double sum = 0;
     for (const Chunk& c : mesh.chunks)
         for (size_t t = 0; t < c.triangles.size(); ++t) {
             const Triangle tri = c.inMesh(c.triangles[t]);
             for (int k = 0; k < 3; ++k) half[{tri[k], tri[(k + 1) % 3]}] = c.origins[t];
         }
+    std::vector<std::pair<Vec3f, Vec3f>> edges;
     for (const auto& [edge, origin] : half)
         if (edge.first < edge.second && half.at({edge.second, edge.first}) != origin)
-            sum += length(at[edge.first] - at[edge.second]);
+            edges.emplace_back(at[edge.first], at[edge.second]);
+    return edges;
+}
+
+double borderLength(const Mesh& mesh) {
+    double sum = 0;
+    for (const auto& [from, to] : borderEdges(mesh)) sum += length(from - to);
     return sum;
 }
 
@@ -196,6 +202,32 @@ TEST(Crisp, BordersOfMaterialsAreStraight) {
             EXPECT_NEAR(measure(mesh).volume_m3 / 12, 1, allowedError(degrees, resolution))
                 << degrees << ' ' << resolution;
         }
+}
+
+TEST(Crisp, BordersInAPlaneLieOnTheWallBetweenTwoParts) {
+    for (const int resolution : {24, 64}) {
+        Scene s;
+        const double degrees = 17;
+        const field::Point p = turned(s.graph, {}, degrees);
+        const field::NodeRef side = p.x - s.graph.literal(0.25f), whole = block(s.graph, {}, {1, 1, 1}, degrees).value;
+        const auto part = [&](const field::NodeRef& cut) {
+            return field::Field{max(whole, cut), {{-1.8f, -1.8f, -1.8f}, {1.8f, 1.8f, 1.8f}}, 1, 0.5f};
+        };
+        const field::Owned both[] = {{part(side), 1}, {part(-side), 2}};
+        s.field = field::sum(s.graph, both);
+        const Mesh mesh = crispMesh(s, resolution);
+        const double a = degrees * 3.14159265358979 / 180;
+        const Vec3d along =
+            (Mat3::rotation({1, 0, 0}, a) * Mat3::rotation({0, 1, 0}, 0.7 * a) * Mat3::rotation({0, 0, 1}, 1.3 * a)) *
+            Vec3d{1, 0, 0};
+        std::vector<double> off;  // of both ends; where the border meets a rim they are a corner of three pieces
+        for (const auto& [from, to] : borderEdges(mesh))
+            for (const Vec3f end : {from, to}) off.push_back(std::abs(dot(end.as<double>(), along) - 0.25));
+        ASSERT_GT(off.size(), 40u);
+        const auto median = off.begin() + static_cast<ptrdiff_t>(off.size() / 2);
+        std::nth_element(off.begin(), median, off.end());
+        EXPECT_LT(*median, 2e-5 * (3.6 / resolution)) << resolution;
+    }
 }
 
 TEST(Crisp, ACylinderHasRoundRims) {

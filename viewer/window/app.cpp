@@ -27,13 +27,15 @@ constexpr double listenFor = 0.5;     // seconds between looks at the file while
 class Workspace {
 public:
     explicit Workspace(Workbench& bench) : bench_(bench) {}
-    void show();
+    /// Draws all panels; `timeline` gets a part for each.
+    void show(FrameTimeline& timeline);
 
 private:
     /// `above`: over all others.
     bool begin(const char* name, ImVec2 low, ImVec2 size, bool above = false);
-    void left(ImVec2 low, ImVec2 size);
-    void right(ImVec2 low, ImVec2 size);
+    void left(ImVec2 low, ImVec2 size, FrameTimeline& timeline);
+    void right(ImVec2 low, ImVec2 size, FrameTimeline& timeline);
+    void view(ImVec2 low, ImVec2 size, FrameTimeline& timeline);
     void splitter(const char* name, float x, float y, float height, float width, std::optional<float>& chosen,
                   float sign);
 
@@ -77,38 +79,55 @@ void Workspace::splitter(const char* name, float x, float y, float height, float
     ImGui::PopStyleVar();
 }
 
-void Workspace::left(ImVec2 low, ImVec2 size) {
+void Workspace::left(ImVec2 low, ImVec2 size, FrameTimeline& timeline) {
     const float above = size.y * 0.5f;
     if (begin("Parameters", low, {size.x, above})) parameters_.show(bench_);
     ImGui::End();
+    timeline.was("panel Parameters");
     if (begin("Shapes", {low.x, low.y + above}, {size.x, size.y - above})) shapes_.show(bench_);
     ImGui::End();
+    timeline.was("panel Shapes");
     ImGui::GetForegroundDrawList()->AddLine({low.x, low.y + above}, {low.x + size.x, low.y + above},
                                             ImGui::GetColorU32(ImGuiCol_Border));
 }
 
-void Workspace::right(ImVec2 low, ImVec2 size) {
+void Workspace::right(ImVec2 low, ImVec2 size, FrameTimeline& timeline) {
     bench_.panels.typing = false;
+    const char* shown = "tabs";
     if (begin("Right", low, size) && ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_NoTooltip)) {
-        const auto tab = [&](const char* name, auto&& panel, bool wanted = false) {
-            const bool open = ImGui::BeginTabItem(name, nullptr, wanted ? ImGuiTabItemFlags_SetSelected : 0);
+        const auto tab = [&](const char* name, const char* part, auto&& panel) {
+            const bool open = ImGui::BeginTabItem(name);
             bench_.report.mark(std::string("tab.") + name);
             if (!open) return false;
             panel.show(bench_);
             ImGui::EndTabItem();
+            shown = part;
             return true;
         };
-        // What was selected elsewhere is shown in the text, unless rules are being worked on.
-        tab("Rules", rules_);
-        if (!tab("Text", text_)) text_.leave();
-        tab("Step", step_);
-        tab("Export", export_);
+        tab("Rules", "panel Rules", rules_);
+        if (!tab("Text", "panel Text", text_)) text_.leave();
+        tab("Step", "panel Step", step_);
+        tab("Export", "panel Export", export_);
         ImGui::EndTabBar();
     }
     ImGui::End();
+    timeline.was(shown);
 }
 
-void Workspace::show() {
+void Workspace::view(ImVec2 low, ImVec2 size, FrameTimeline& timeline) {
+    const auto drawn = [&] {
+        ElapsedTimes all = bench_.view.field.times().drawn;
+        return all += bench_.view.mesh.drawn();
+    };
+    const ElapsedTimes before = drawn();
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    if (begin("View", low, size)) viewport(bench_);
+    ImGui::End();
+    ImGui::PopStyleVar();
+    timeline.was("panel View", drawn() - before);
+}
+
+void Workspace::show(FrameTimeline& timeline) {
     const ImGuiIO& io = ImGui::GetIO();
     const float leftWidth = left_.value_or(std::clamp(io.DisplaySize.x * 0.23f, 280.0f, 430.0f)),
                 rightWidth = right_.value_or(std::clamp(io.DisplaySize.x * 0.31f, 340.0f, 560.0f));
@@ -121,13 +140,11 @@ void Workspace::show() {
     if (begin("Status", {0, io.DisplaySize.y - status}, {io.DisplaySize.x, status})) bars_.status(bench_);
     ImGui::End();
     ImGui::PopStyleColor();
-    left({0, bar}, {leftWidth, height});
-    right({io.DisplaySize.x - rightWidth, bar}, {rightWidth, height});
+    timeline.was("bars");
+    left({0, bar}, {leftWidth, height}, timeline);
+    right({io.DisplaySize.x - rightWidth, bar}, {rightWidth, height}, timeline);
     const float x = leftWidth + 1, width = io.DisplaySize.x - leftWidth - rightWidth - 2;
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    if (begin("View", {x, bar}, {width, height - problems})) viewport(bench_);
-    ImGui::End();
-    ImGui::PopStyleVar();
+    view({x, bar}, {width, height - problems}, timeline);
     if (problems > 0) {
         if (begin("Problems", {x, bar + height - problems}, {width, problems})) problemsPanel(bench_);
         ImGui::End();
@@ -135,6 +152,7 @@ void Workspace::show() {
     splitter("##left", leftWidth, bar, height, leftWidth, left_, 1);
     splitter("##right", io.DisplaySize.x - rightWidth, bar, height, rightWidth, right_, -1);
     ImGui::PopStyleVar();
+    timeline.was("panel Problems");
     if (!io.WantTextInput || bench_.panels.typing) {
         bars_.keys(bench_);
         if (!bench_.panels.typing) {
@@ -142,7 +160,9 @@ void Workspace::show() {
             viewKeys(bench_);
         }
     }
+    timeline.was("keys");
     bars_.dialogs(bench_);
+    timeline.was("dialogs");
 }
 
 /// What a test may know.
@@ -291,14 +311,9 @@ void Loop::draw(FrameTimeline& timeline, const Stopwatch& whole) {
     if (wanted_ > 0) --wanted_;
     sinceShown_ = {};
     window_.setTitle(titleOf(bench_.document));
-    const auto drawn = [&] {
-        ElapsedTimes all = bench_.view.field.times().drawn;
-        return all += bench_.view.mesh.drawn();
-    };
-    const ElapsedTimes before = drawn();
     window_.beginFrame();
-    workspace_.show();
-    timeline.was("panels", drawn() - before);
+    timeline.was("start of a frame");
+    workspace_.show(timeline);
     window_.endFrame();
     timeline.drew();
     frameSeconds_ = whole.seconds();

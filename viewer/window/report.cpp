@@ -14,46 +14,51 @@ constexpr double longGap = 0.05;  // seconds
 }  // namespace
 
 struct Report::Data {
-    /// How long the window looked away from the user's input, over all turns.
+    /// How long the window looked away from the user's input by one clock, over all turns.
     struct Gaps {
-        uint64_t over = 0, overOfProcessor = 0;
-        ElapsedTimes longest;                    ///< on each clock
-        uint64_t frame = 0;                      ///< before the longest by the wall's
-        std::vector<FrameTimeline::Part> parts;  ///< of the longest by the wall's
-        std::map<std::string, uint64_t> most;    ///< gaps over 50 ms, by the part that took most of them
+        double ElapsedTimes::*clock;
+        uint64_t over = 0;                         ///< gaps over 50 ms
+        std::map<std::string, uint64_t> most{};    ///< these, by the part that took most of them
+        double longest = 0;                        ///< seconds
+        uint64_t frame = 0;                        ///< before the longest
+        std::vector<FrameTimeline::Part> parts{};  ///< of the longest
 
         void add(const std::vector<FrameTimeline::Part>& turn, uint64_t frameBefore) {
-            ElapsedTimes gap;
-            for (const FrameTimeline::Part& part : turn) gap += part.spent;
-            if (gap.processor > longGap) ++overOfProcessor;
-            if (gap.wall > longGap) {
+            double gap = 0;
+            for (const FrameTimeline::Part& part : turn) gap += part.spent.*clock;
+            if (gap > longGap) {
                 ++over;
-                ++most[std::max_element(turn.begin(), turn.end(), [](const auto& a, const auto& b) {
-                           return a.spent.wall < b.spent.wall;
+                ++most[std::max_element(turn.begin(), turn.end(), [&](const auto& a, const auto& b) {
+                           return a.spent.*clock < b.spent.*clock;
                        })->name];
             }
-            if (gap.wall > longest.wall) {
-                frame = frameBefore;
-                parts = turn;
-            }
-            longest = {std::max(longest.wall, gap.wall), std::max(longest.processor, gap.processor)};
+            if (gap <= longest) return;
+            longest = gap;
+            frame = frameBefore;
+            parts = turn;
         }
         nlohmann::json told() const {
             nlohmann::json all{{"over", over},
-                               {"overOfProcessor", overOfProcessor},
-                               {"longest", longest.wall},
-                               {"longestOfProcessor", longest.processor},
-                               {"frame", frame},
                                {"most", most},
+                               {"longest", longest},
+                               {"frame", frame},
                                {"parts", nlohmann::json::object()}};
-            for (const auto& [name, spent] : parts) all["parts"][name] = {spent.wall, spent.processor};
+            for (const auto& [name, spent] : parts) all["parts"][name] = spent.*clock;
             return all;
         }
+    };
+    struct Clocks {
+        Gaps wall{&ElapsedTimes::wall}, processor{&ElapsedTimes::processor};
+        void add(const std::vector<FrameTimeline::Part>& turn, uint64_t frameBefore) {
+            wall.add(turn, frameBefore);
+            processor.add(turn, frameBefore);
+        }
+        nlohmann::json told() const { return {{"wall", wall.told()}, {"processor", processor.told()}}; }
     };
 
     nlohmann::json widgets = nlohmann::json::object(), state = nlohmann::json::object();
     uint64_t frame = 0, turns = 0;
-    Gaps undrawn, whole;
+    Clocks undrawn, whole;
 };
 
 Report::Report(std::filesystem::path file) : file_(std::move(file)), data_(std::make_unique<Data>()) {}

@@ -1,0 +1,44 @@
+// Lines in the plane of a cell's face: where the fields of two pieces are zero together.
+#pragma once
+
+#include <cmath>
+
+#include "modeler/mesh/piece_samples.h"
+
+namespace sgm::mesh {
+
+constexpr float parallelSine = 1e-3f;  ///< sine of the least angle between two lines that cross
+
+/// The two axes of a face.
+struct FaceAxes {
+    int u, v;
+    explicit FaceAxes(int axis) : u((axis + 1) % 3), v((axis + 2) % 3) {}
+    double dot(Vec3f g, Vec3f d) const { return double{g[u]} * d[u] + double{g[v]} * d[v]; }
+    double length(Vec3f g) const { return std::sqrt(dot(g, g)); }
+};
+
+/// A piece's field to first order: its value and derivative at a point.
+struct LinearField {
+    PiecePoint point;
+    float value = 0;  ///< of the field at the point
+};
+
+inline Vec3f between(Vec3f a, Vec3f b, double share) {
+    return (a.as<double>() + (b - a).as<double>() * share).as<float>();
+}
+
+/// Moves `p` within the plane of the face to where both fields are zero; false, and `p` as it was, where their lines
+/// are parallel. `p`'s coordinate across the plane becomes that of the face on which `a` lies.
+inline bool crossInFace(const FaceAxes& plane, const LinearField& a, const LinearField& b, Vec3f& p) {
+    const Vec3f ga = a.point.gradient, gb = b.point.gradient;
+    const double det = double{ga[plane.u]} * gb[plane.v] - double{ga[plane.v]} * gb[plane.u];
+    if (!(std::abs(det) > parallelSine * plane.length(ga) * plane.length(gb))) return false;
+    // g · (p − q) + f = 0 for both.
+    const double ra = plane.dot(ga, a.point.at) - a.value, rb = plane.dot(gb, b.point.at) - b.value;
+    p = a.point.at;
+    p[plane.u] = static_cast<float>((ra * gb[plane.v] - rb * ga[plane.v]) / det);
+    p[plane.v] = static_cast<float>((rb * ga[plane.u] - ra * gb[plane.u]) / det);
+    return true;
+}
+
+}  // namespace sgm::mesh

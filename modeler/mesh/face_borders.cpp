@@ -1,0 +1,152 @@
+// Borders between pieces that don't bend where they meet: the point where one ends and the other begins.
+#include <algorithm>
+#include <cmath>
+
+#include "modeler/mesh/face_axes.h"
+#include "modeler/mesh/face_creases.h"
+
+namespace sgm::mesh {
+namespace {
+
+constexpr int mostLooks = 2;              ///< times that the field is looked at below a border
+constexpr double depthShare = 0.5625;     ///< of a bracket's length: how far below its middle
+constexpr double besideShare = 0x1.0p-9;  ///< of a cell, between a border and where its sides are looked at
+constexpr int besideRounds = 3;           ///< times that both sides are looked at, as the surface may bend
+constexpr size_t borderParts = 4;         ///< of a border's bracket, one of which is the next: few rounds fill vectors
+constexpr int borderRounds = 6;           ///< 4^-6 of a segment is left
+constexpr double gapMargin = 0x1.0p-7;    ///< of the line between a gap's ends, kept free of its break
+
+double shareOfPart(size_t k) { return static_cast<double>(k) / static_cast<double>(borderParts); }
+
+}  // namespace
+
+size_t FaceCreases::samplesOf(State state) {
+    return state == State::Below ? 1 : state == State::Border ? borderParts - 1 : 2;
+}
+
+/// `isFlat`: both pieces lie in one plane.
+void FaceCreases::searchBorder(Gap& gap, bool isFlat) {
+    gap.state = State::Border;
+    gap.rounds = 0;
+    gap.looks = isFlat ? mostLooks : 0;
+    gap.lineA = gap.a, gap.lineB = gap.b;
+    gap.valueA = gap.valueB = 0;
+}
+
+void FaceCreases::askForBorder(const FaceSegment& segment, const Gap& gap) {
+    const auto add = [&](Vec3d p) { samples_.add(tapes_, segment.brick, p.as<float>()); };
+    const Vec3d low = gap.lineA.at.as<double>(), way = (gap.lineB.at - gap.lineA.at).as<double>();
+    if (gap.state == State::Below)
+        return add(low + way * 0.5 - normalized(gap.a.gradient.as<double>()) * (depthShare * length(way)));
+    if (gap.state == State::Beside) {
+        const Vec3d step = normalized(way) * (besideShare * grid_->cell_m);
+        add(gap.at.as<double>() - step);
+        return add(gap.at.as<double>() + step);
+    }
+    for (size_t k = 1; k < borderParts; ++k) add(low + way * shareOfPart(k));
+}
+
+void FaceCreases::takeBorder(const FaceSegment& segment, uint32_t g, size_t sample) {
+    Gap& gap = gaps_[g];
+    if (gap.state == State::Border) return takeParts(segment, g, sample);
+    const bool found = gap.state == State::Below ? takeBelow(segment, gap, sample) : takeBeside(segment, gap, sample);
+    if (!found) gap.state = State::Border;
+}
+
+/// A little below a border at which two parts stand side by side, the field is the distance to the wall between them,
+/// which leads to the border at once. False where it doesn't meet the surface within the bracket.
+bool FaceCreases::takeBelow(const FaceSegment& segment, Gap& gap, size_t sample) {
+    float value;
+    gap.wall.point = samples_.point(sample, value);
+    gap.state = State::Beside;
+    gap.looked = 0;
+    // The point nearest to it in the plane of the face.
+    const int across = segment.axis;
+    gap.wall.value = value + gap.wall.point.gradient[across] * (gap.lineA.at[across] - gap.wall.point.at[across]);
+    gap.wall.point.at[across] = gap.lineA.at[across];
+    return isKnown(value) && meetWall(segment, gap, {gap.lineA, 0});
+}
+
+bool FaceCreases::meetWall(const FaceSegment& segment, Gap& gap, const LinearField& surface) const {
+    if (!crossInFace(FaceAxes(segment.axis), surface, gap.wall, gap.at)) return false;
+    const Vec3d way = (gap.lineB.at - gap.lineA.at).as<double>();
+    const double along = dot((gap.at - gap.lineA.at).as<double>(), way);
+    return along >= 0 && along <= dot(way, way) && mayLieAt(segment, gap.at);
+}
+
+/// Done where the first piece lies on one side and the second on the other, on the surface.
+bool FaceCreases::takeBeside(const FaceSegment& segment, Gap& gap, size_t sample) {
+    LinearField a, b;
+    a.point = samples_.point(sample, a.value), b.point = samples_.point(sample + 1, b.value);
+    if (!isKnown(a.value) || !isKnown(b.value) || a.point.label != gap.a.label || b.point.label != gap.b.label)
+        return false;
+    const double near = besideShare * grid_->cell_m;
+    const auto liesOn = [&](const LinearField& f) { return std::abs(f.value) <= near * length(f.point.gradient); };
+    if (!liesOn(a) || !liesOn(b)) return ++gap.looked < besideRounds && meetWall(segment, gap, a);
+    gap.lineA = a.point, gap.valueA = a.value;
+    gap.lineB = b.point, gap.valueB = b.value;
+    gap.crossing = gap.at;
+    gap.state = State::Done;
+    return true;
+}
+
+/// A point of a border's bracket, on the surface where that is at most so many metres away; on the line, with the
+/// piece before it, where the field isn't known.
+PiecePoint FaceCreases::inBracket(const FaceSegment& segment, const PiecePoint& before, double most,
+                                  size_t sample) const {
+    float value;
+    PiecePoint point = samples_.point(sample, value);
+    if (!isKnown(value)) {
+        const Vec3f at = point.at;
+        point = before;
+        point.at = at;
+        return point;
+    }
+    const FaceAxes plane(segment.axis);
+    const double square = plane.dot(point.gradient, point.gradient);
+    if (square > 0 && std::abs(value) <= most * std::sqrt(square)) {
+        point.at[plane.u] -= static_cast<float>(value * point.gradient[plane.u] / square);
+        point.at[plane.v] -= static_cast<float>(value * point.gradient[plane.v] / square);
+    }
+    return point;
+}
+
+/// The bracket becomes that part of itself where the first piece ends.
+void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sample) {
+    Gap& gap = gaps_[g];
+    const double bracket = length((gap.lineB.at - gap.lineA.at).as<double>());
+    const bool isWide = bracket > mergedShare * grid_->cell_m;  // else the breaks beside a third piece become one
+    for (size_t k = 1; k < borderParts; ++k) {
+        const double most = shareOfPart(std::min(k, borderParts - k)) * bracket;
+        const PiecePoint point = inBracket(segment, gap.lineA, most, sample + k - 1);
+        if (point.label == gap.a.label) {
+            gap.lineA = point;
+            continue;
+        }
+        if (point.label != gap.b.label && gap.splits < mostSplits && isWide && mayLieAt(segment, point.at))
+            return split(g, point);
+        if (point.label == gap.b.label)
+            gap.lineB = point;
+        else
+            gap.lineB.at = point.at;
+        break;
+    }
+    if (++gap.rounds < borderRounds) {
+        if (gap.looks > 0) --gap.looks, gap.state = State::Below;
+        return;
+    }
+    const Vec3f found = between(gap.lineA.at, gap.lineB.at, 0.5);
+    const bool isInside = mayLieAt(segment, found);
+    gap.at = isInside ? found : onLine(gap, found);
+    if (!gap.leaves) gap.crossing = found, gap.leaves = !isInside;
+    gap.state = State::Done;
+}
+
+/// The point nearest to `p` on the line between a gap's ends, a little away from both: it always lies in the face.
+Vec3f FaceCreases::onLine(const Gap& gap, Vec3f p) {
+    const Vec3d way = (gap.b.at - gap.a.at).as<double>();
+    const double share = dot((p - gap.a.at).as<double>(), way) / std::max(dot(way, way), 1e-300);
+    return between(gap.a.at, gap.b.at, std::clamp(share, gapMargin, 1 - gapMargin));
+}
+
+}  // namespace sgm::mesh
