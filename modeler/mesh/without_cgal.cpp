@@ -1,13 +1,18 @@
-// What refine.cpp, simplify.cpp, tips.cpp and validate_exactly.cpp do in a build without CGAL.
+// What refine.cpp, simplify.cpp, tips.cpp, triangulate.cpp and validate_exactly.cpp do in a build without CGAL.
 #include "modeler/core/packages.h"
 #include "modeler/mesh/refine.h"
 #include "modeler/mesh/simplify.h"
 #include "modeler/mesh/tips.h"
+#include "modeler/mesh/triangulate.h"
 #include "modeler/mesh/validate.h"
 
 namespace sgm::mesh {
 
 Result<MeshValidation> validate(const Mesh&) { return missingPackage(Package::Cgal, "validation"); }
+
+bool triangulatePlanar(std::span<const DirectedEdge>, std::span<const Vec3f>, Vec3d, std::vector<Triangle>&) {
+    return false;
+}
 
 Result<Mesh> simplify(const Mesh&, const SimplifyOptions&, Progress*) {
     return missingPackage(Package::Cgal, "simplification");

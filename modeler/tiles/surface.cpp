@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
-#include "modeler/tiles/level_squares.h"
+#include "modeler/tiles/level_regions.h"
 #include "modeler/tiles/textures.h"
 
 namespace sgm::tiles {
@@ -114,8 +115,10 @@ std::map<uint32_t, std::vector<uint32_t>> byMaterial(const mesh::PackedMesh& mes
 
 Vec3f unitOr(Vec3f v, Vec3f otherwise) { return length(v) > 0 ? normalized(v) : otherwise; }
 
-constexpr double errorShare = .05;  // of a cell of the ground's grid, how far its simplification may move it
-constexpr float nearly = .94f;      // cosine of the angle, 20°, between a triangle and what it may be shaded as
+constexpr double errorShare = .05;      // of a cell of the ground's grid, how far its simplification may move it
+constexpr double levelShare = 0x1p-12;  // of such a cell, within which heights are level
+constexpr double straightShare = .01;   // of such a cell, within which a border between level regions is straight
+constexpr float nearly = .94f;          // cosine of the angle, 20°, between a triangle and what it may be shaded as
 
 /// Every triangle with a normal of its own where its neighbours lie in other planes. Corners whose vertex has a normal
 /// (by `normals`, where there are some) that is nearly the triangle's get that one, so that hills look smooth.
@@ -132,6 +135,28 @@ void addFaceted(PieceBuilder& builder, const std::vector<uint32_t>& indices, con
             builder.add(vertex, positions[vertex], smooth ? normals[vertex] : normal);
         }
     }
+}
+
+/// Some triangles with the vertices that they use.
+struct Extract {
+    std::vector<uint32_t> indices;
+    std::vector<Vec3f> positions, normals;
+};
+
+Extract extract(const std::vector<uint32_t>& corners, const std::vector<Vec3f>& positions,
+                const std::vector<Vec3f>& normals) {
+    Extract out;
+    std::vector<uint32_t> number(positions.size(), none);
+    out.indices.reserve(corners.size());
+    for (const uint32_t vertex : corners) {
+        if (number[vertex] == none) {
+            number[vertex] = static_cast<uint32_t>(out.positions.size());
+            out.positions.push_back(positions[vertex]);
+            out.normals.push_back(normals[vertex]);
+        }
+        out.indices.push_back(number[vertex]);
+    }
+    return out;
 }
 
 /// `indices` with fewer triangles.
@@ -219,49 +244,57 @@ std::vector<SurfacePiece> coarsePiecesOf(const mesh::PackedMesh& mesh, const Pro
 std::vector<SurfacePiece> groundPieces(const mesh::PackedMesh& mesh, const std::vector<uint32_t>& triangles,
                                        const Provenance& provenance, Vec3d centre, double pitch_m) {
     TextureCharts charts;
-    std::map<uint32_t, std::map<uint32_t, std::vector<uint32_t>>> lists;  // material, chart: vertices, three a triangle
+    using Look = std::pair<uint32_t, uint32_t>;  // material, chart
+    std::map<Look, uint32_t> keyOf;
+    std::vector<Look> looks;  // by key
+    KeyedTriangles ground;
+    std::vector<Vec3f> positions, normals;
+    std::vector<uint32_t> local(mesh.positions.size(), none);
     for (const uint32_t t : triangles) {
-        const uint32_t material = materialOf(mesh, provenance, t);
-        uint32_t chart = 0;
-        if (provenance.materials[material].texture) {
-            const mesh::Triangle& c = mesh.triangles[t];
+        const mesh::Triangle& c = mesh.triangles[t];
+        Look look{materialOf(mesh, provenance, t), 0};
+        if (provenance.materials[look.first].texture) {
             // Those of vertices lean where planes meet.
             const Vec3f& a = mesh.positions[c.x];
             const Vec3f across = cross(mesh.positions[c.y] - a, mesh.positions[c.z] - a);
-            chart = charts.of(partOf(mesh, provenance, t), unitOr(across, unitOr(mesh.normals[c.x], {0, 1, 0})));
+            look.second = charts.of(partOf(mesh, provenance, t), unitOr(across, unitOr(mesh.normals[c.x], {0, 1, 0})));
         }
-        auto& list = lists[material][chart];
-        for (int k = 0; k < 3; ++k) list.push_back(mesh.triangles[t][k]);
+        const auto [key, isNew] = keyOf.try_emplace(look, static_cast<uint32_t>(looks.size()));
+        if (isNew) looks.push_back(look);
+        mesh::Triangle own;
+        for (int k = 0; k < 3; ++k) {
+            uint32_t& number = local[c[k]];
+            if (number == none) {
+                number = static_cast<uint32_t>(positions.size());
+                // Exact: positions and centre are multiples of a cell's share.
+                positions.push_back((mesh.positions[c[k]].as<double>() - centre).as<float>());
+                normals.push_back(mesh.normals[c[k]]);
+            }
+            own[k] = number;
+        }
+        ground.triangles.push_back(own);
+        ground.keys.push_back(key->second);
     }
+    ground = mergeLevelRegions(ground, positions, levelShare * pitch_m, straightShare * pitch_m);
+    std::vector<std::vector<uint32_t>> corners(looks.size());  // by key, three a triangle
+    for (size_t t = 0; t < ground.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k) corners[ground.keys[t]].push_back(ground.triangles[t][k]);
     std::vector<SurfacePiece> pieces;
-    std::vector<uint32_t> local(mesh.positions.size(), none);
-    for (const auto& [material, byChart] : lists) {
-        PieceBuilder builder(material, byChart.begin()->second.size() / 6);
-        for (const auto& [chart, all] : byChart) {
-            const std::vector<uint32_t> corners = mergedSquares(all, mesh.positions, centre, pitch_m);
-            std::vector<Vec3f> positions, normals;
-            std::vector<uint32_t> indices, used;
-            indices.reserve(corners.size());
-            for (const uint32_t vertex : corners) {
-                if (local[vertex] == none) {
-                    local[vertex] = static_cast<uint32_t>(positions.size());
-                    used.push_back(vertex);
-                    // Exact: positions and centre are multiples of a cell's share.
-                    positions.push_back((mesh.positions[vertex].as<double>() - centre).as<float>());
-                    normals.push_back(mesh.normals[vertex]);
-                }
-                indices.push_back(local[vertex]);
-            }
-            for (const uint32_t vertex : used) local[vertex] = none;
-            TextureChart lies;
-            if (const auto& texture = provenance.materials[material].texture) {
-                lies = movedTo(charts[chart], centre, *texture);
-                builder.enter(lies, *texture, indices.size() / 3);
-            }
-            addFaceted(builder, simplified(indices, positions, errorShare * pitch_m, meshopt_SimplifyLockBorder),
-                       positions, normals);
+    std::optional<PieceBuilder> builder;
+    for (auto at = keyOf.begin(); at != keyOf.end(); ++at) {
+        const auto& [look, key] = *at;
+        const Extract part = extract(corners[key], positions, normals);
+        if (!builder) builder.emplace(look.first, part.indices.size() / 6);
+        TextureChart lies;
+        if (const auto& texture = provenance.materials[look.first].texture) {
+            lies = movedTo(charts[look.second], centre, *texture);
+            builder->enter(lies, *texture, part.indices.size() / 3);
         }
-        if (!builder.piece.indices.empty()) pieces.push_back(std::move(builder.piece));
+        addFaceted(*builder, simplified(part.indices, part.positions, errorShare * pitch_m, meshopt_SimplifyLockBorder),
+                   part.positions, part.normals);
+        if (const auto next = std::next(at); next != keyOf.end() && next->first.first == look.first) continue;
+        if (!builder->piece.indices.empty()) pieces.push_back(std::move(builder->piece));
+        builder.reset();
     }
     return pieces;
 }
