@@ -29,9 +29,9 @@ public:
     /// A turn of the window's loop between two looks at the user's input, without the wait for events.
     void add(const FrameTimeline& turn);
     /// Writes {"frame": n, "widgets": {name: [x, y, width, height]}, "state": {…}, "gaps": {…}} beside the file and
-    /// renames it there. `gaps` is of all turns since the start: how many; and with drawing excluded and included, by the
-    /// wall's clock and by the processor's for this thread, how many of them took more than 50 ms, which part took most
-    /// of each of these, and the longest in seconds, with the frame before it and its parts.
+    /// renames it there. `gaps` is of all turns since the start: how many; and with drawing excluded and included, by
+    /// the wall's clock and by the processor's for this thread, how many of them took more than 50 ms, which part took
+    /// most of each of these, and the longest in seconds, with the frame before it and its parts.
     void write();
 
 private:
