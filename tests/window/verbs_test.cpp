@@ -95,6 +95,29 @@ TEST_F(Verbs, RulesAndShapes) {
     EXPECT_EQ(until("its place", [](const auto& s) { return s["textSelection"] != ""; })["textSelection"], "colr");
 }
 
+TEST_F(Verbs, StepsGoOnWhileTheTextIsWrong) {
+    openText(hall);
+    click("tab.Step");
+    click("step.begin");
+    const size_t shapes =
+        until("the start", [](const auto& s) { return s["stepping"] == true && !s["busy"]; })["shapes"];
+    click("tab.Text");
+    click("line.9", 0.99);
+    type(" colr");
+    until("a problem", [](const auto& s) { return !s["problems"].empty(); });
+    key("Escape");
+    click("tab.Step");
+    click("apply.Hall/Base.Base#1");
+    click("live.Hall/Base/Post");
+    EXPECT_EQ(state()["shapes"], shapes) << "no model has the step yet";
+    EXPECT_EQ(state()["selection"], "");
+    click("tab.Text");
+    click("line.9", 0.99);
+    for (int i = 0; i < 5; ++i) key("BackSpace");
+    const auto stepped = until("the step", [&](const auto& s) { return s["shapes"] > shapes; });
+    EXPECT_EQ(stepped["selection"], "Hall/Base/Post");
+}
+
 TEST_F(Verbs, Parameters) {
     openText(hall);
     keys({"w", "w"});

@@ -35,6 +35,7 @@ Result<Stepper> Stepper::begin(std::shared_ptr<const rules::Grammar> grammar, de
 }
 
 void Stepper::list() {
+    way_.reset();
     rows_.clear();
     const derive::ShapeTree& tree = session_.tree();
     const rules::Grammar& grammar = session_.grammar();
@@ -88,9 +89,9 @@ Result<std::shared_ptr<const derive::Derivation>> Stepper::derivation() const {
 
 Result<std::string> Stepper::way(const std::string& name) const {
     if (!session_.canUndo()) return refused("no rule was applied yet, so there is no way to save");
-    const auto steps = session_.way();
-    if (!steps.ok()) return steps.error();
-    return derive::wayText(session_.grammar(), name, *steps);
+    if (!way_) way_ = session_.way();
+    if (!way_->ok()) return way_->error();
+    return derive::wayText(session_.grammar(), name, **way_);
 }
 
 Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options,

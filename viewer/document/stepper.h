@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ public:
     /// The derivation so far, for ShowRequest::byHand: made anew after every step.
     Result<std::shared_ptr<const derive::Derivation>> derivation() const;
     /// The way so far as a line, "derive NAME: R0 => R2"; Error::Input where a line can't say it, or nothing was done.
+    /// Derives anew the first time after a step.
     Result<std::string> way(const std::string& name) const;
     /// The edit that writes that line into the text: in place of the way of that name, else behind the last one.
     /// Refused unless running the line gives this very tree. `ast` must be what the grammar was checked from.
@@ -70,6 +72,7 @@ private:
     derive::Session session_;
     derive::Options options_;
     std::vector<StepRow> rows_;
+    mutable std::optional<Result<std::vector<rules::Derive::Step>>> way_;  ///< of the session, once it was asked for
 };
 
 /// A grammar with a way in it.

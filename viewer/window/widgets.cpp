@@ -101,15 +101,15 @@ void heading(const char* text) {
 }
 
 std::string shortened(const std::string& text, float width) {
-    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-    std::string kept = text;
-    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
-    do {
-        while (!kept.empty() && continues(kept.back())) kept.pop_back();
-        if (!kept.empty()) kept.pop_back();
-        while (!kept.empty() && kept.back() == ' ') kept.pop_back();
-    } while (!kept.empty() && ImGui::CalcTextSize((kept + "…").c_str()).x > width);
-    return kept + "…";
+    ImFont* const font = ImGui::GetFont();
+    const float size = ImGui::GetFontSize();
+    const char *const begin = text.c_str(), *const end = begin + text.size(), *rest = begin;
+    font->CalcTextSizeA(size, width, 0, begin, end, &rest);  // looks no farther than the width
+    if (rest == end) return text;
+    const char* kept = begin;
+    font->CalcTextSizeA(size, width - ImGui::CalcTextSize("…").x, 0, begin, rest, &kept);
+    while (kept > begin && kept[-1] == ' ') --kept;
+    return std::string(begin, kept) + "…";
 }
 
 void faint(const std::string& text) {

@@ -160,12 +160,19 @@ void Workbench::select(derive::ShapeId shape, bool quiet) {
     selected_ = shape;
     view.face.reset();
     document.select(shape == derive::none ? "" : tree()->path(shape, true));
-    if (shape == derive::none || quiet) return;
-    const syntax::SourceSpan span = tree()->shapes[shape].span;
-    if (span.source && span.source == shown()->grammar->sources.front().get()) {
-        panels.reveal = {span.begin, span.end};
-        panels.revealRule = span.begin;
-    }
+    if (shape != derive::none && !quiet) reveal(tree()->shapes[shape].span);
+}
+
+void Workbench::selectLive(derive::ShapeId shape) {
+    document.select(stepper->tree().path(shape, true));
+    resolveSelection();
+    reveal(stepper->tree().shapes[shape].span);
+}
+
+void Workbench::reveal(const syntax::SourceSpan& span) {
+    if (!span.source || !shown() || span.source != shown()->grammar->sources.front().get()) return;
+    panels.reveal = {span.begin, span.end};
+    panels.revealRule = span.begin;
 }
 
 void Workbench::resolveSelection() {

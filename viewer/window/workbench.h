@@ -145,6 +145,8 @@ public:
     // --- The selection ---
     /// A shape of the shown model, or none. The text that made it is revealed unless `quiet`.
     void select(derive::ShapeId shape, bool quiet = false);
+    /// A shape of the derivation by hand. The model that has it may come later, or not at all while the text is wrong.
+    void selectLive(derive::ShapeId shape);
     derive::ShapeId selected() const { return selected_; }
     const document::BuiltModel* shown() const { return session.model().get(); }
     const derive::ShapeTree* tree() const { return shown() ? &shown()->model.derivation.tree : nullptr; }
@@ -198,6 +200,8 @@ private:
     /// Goes over to another document; its model comes later, the field of the one before stays until then.
     void show(document::Document other);
     void resolveSelection();
+    /// Shows a place in the text and its rule.
+    void reveal(const syntax::SourceSpan& span);
 
     bool working() const { return session.busy() || uploader.busy(); }
     /// Leads the steps over to a new text.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "viewer/document/picking.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
@@ -8,6 +9,12 @@
 namespace sgm::window {
 
 using namespace widgets;
+
+namespace {
+
+constexpr size_t longestHint = 1000;  // bytes of a way: more fills the screen
+
+}  // namespace
 
 void StepPanel::begin(Workbench& bench) {
     ImGui::PushTextWrapPos(0);
@@ -57,19 +64,19 @@ void StepPanel::shapes(Workbench& bench) {
         for (const document::StepRow& row : bench.stepper->rows()) waiting += !row.rules.empty();
         const size_t live = bench.stepper->rows().size();
         heading(fmt::format("{} live shape{}, {} of them matched", live, live == 1 ? "" : "s", waiting).c_str());
-        const document::StepRow* picked =
-            bench.selected() == derive::none ? nullptr : bench.stepper->rowOf(bench.selected());
+        const derive::ShapeId meant = document::selected(bench.stepper->tree(), bench.document.choice().selection);
+        const document::StepRow* const picked = meant == derive::none ? nullptr : bench.stepper->rowOf(meant);
         for (const document::StepRow& row : bench.stepper->rows()) {
             ImGui::PushID(static_cast<int>(row.shape));
             const bool selected = picked == &row;
             ImGui::PushStyleColor(ImGuiCol_Text, row.rules.empty() ? tint::faint : tint::nonTerminal);
-            if (ImGui::Selectable(row.path.c_str(), selected)) bench.select(seen_ = row.shape);
+            if (ImGui::Selectable(row.path.c_str(), selected)) bench.selectLive(seen_ = row.shape);
             ImGui::PopStyleColor();
             bench.report.mark("live." + row.path);
             hint(fmt::format("{:.2f} x {:.2f} x {:.2f} m", row.size_m.x, row.size_m.y, row.size_m.z).c_str());
-            if (selected && bench.selected() != seen_) {
+            if (selected && row.shape != seen_) {
                 ImGui::SetScrollHereY();
-                seen_ = bench.selected();
+                seen_ = row.shape;
             }
             ImGui::Indent();
             for (const document::StepRule& r : row.rules) {
@@ -96,7 +103,7 @@ void StepPanel::save(Workbench& bench) {
     if (way) ImGui::PushFont(codeFont());
     faint(shortened(whole, ImGui::GetContentRegionAvail().x));
     if (way) ImGui::PopFont();
-    hint(whole.c_str());
+    hint(whole.size() <= longestHint ? whole.c_str() : (whole.substr(0, longestHint) + "…").c_str());
     const float width = ImGui::CalcTextSize("Save way").x + 2 * ImGui::GetStyle().FramePadding.x;
     field(bench.report, "step.name", way_, "Name of the way",
           ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
