@@ -18,16 +18,21 @@ namespace sgm::lower {
 /// One worker's.
 class LocalTapes {
 public:
-    static constexpr size_t mostBoxes = 64;  ///< at once
+    static constexpr size_t boxesPerTape = 8;                         ///< that are shortened from one tape
+    static constexpr size_t mostBoxes = boxesPerTape * boxesPerTape;  ///< at once
 
     /// `tape` has to stay.
     explicit LocalTapes(const eval::Tape& tape) : tape_(tape) {}
 
-    /// Calls visit(i, tape) for those of at most `mostBoxes` boxes that may hold surface.
+    /// Prepares for boxes within this one: the whole tape is looked at once for all of them.
+    void enter(const Box3f& around) { shortenTo(tape_, {&around, 1}, {&entered_, 1}); }
+
+    /// Calls visit(i, tape) for those of at most `mostBoxes` boxes, all in the one entered, that may hold surface.
     template <class Visit>
     void visit(std::span<const Box3f> boxes, Visit&& visit) {
+        if (entered_.isEmpty) return;
         const Box3f all = boxAround(boxes);
-        shortenTo(tape_, {&all, 1}, {&all_, 1});
+        shortenTo(entered_.tape, {&all, 1}, {&all_, 1});
         if (all_.isEmpty) return;
         std::array<Box3f, mostBoxes / boxesPerTape> around;
         const size_t count = (boxes.size() + boxesPerTape - 1) / boxesPerTape;
@@ -46,8 +51,6 @@ public:
     eval::Workspace& workspace() { return workspace_; }
 
 private:
-    static constexpr size_t boxesPerTape = 8;  ///< that are shortened from one tape
-
     /// A tape for a box.
     struct Local {
         eval::Tape tape;
@@ -71,7 +74,7 @@ private:
     }
 
     const eval::Tape& tape_;
-    Local all_;
+    Local entered_, all_;
     std::array<Local, mostBoxes / boxesPerTape> groups_;
     std::array<Local, boxesPerTape> each_;
     eval::Workspace workspace_;
@@ -105,38 +108,56 @@ private:
     std::vector<uint32_t> labels_;
 };
 
-/// Orders items so that halves of the list, and halves of these, lie beside each other. `centreOf` gives an item's
-/// place, `numberOf` a number that no other has. O(n log² n).
-template <class Item, class CentreOf, class NumberOf>
-void orderByPlace(std::span<Item> items, CentreOf centreOf, NumberOf numberOf) {
-    constexpr size_t fewest = 8;
-    if (items.size() <= fewest) return;
+/// Orders items, which have a scope and the number of a part, so that those that LocalTapes takes together lie beside
+/// each other: halves of the list, and halves of these, cut between groups. O(n log² n).
+template <class Item>
+void orderByPlace(std::span<Item> items) {
+    if (items.size() <= LocalTapes::boxesPerTape) return;
+    size_t group = LocalTapes::boxesPerTape;
+    while (group * LocalTapes::boxesPerTape < items.size()) group *= LocalTapes::boxesPerTape;
     Box3d box;
-    for (const Item& item : items) box = hull(box, centreOf(item));
+    for (const Item& item : items) box = hull(box, item.scope.centre);
     const Vec3d size = box.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const auto middle = items.begin() + static_cast<ptrdiff_t>(items.size() / 2);
-    std::nth_element(items.begin(), middle, items.end(), [&](const Item& a, const Item& b) {
-        return std::pair(centreOf(a)[axis], numberOf(a)) < std::pair(centreOf(b)[axis], numberOf(b));
-    });
-    orderByPlace(items.first(items.size() / 2), centreOf, numberOf);
-    orderByPlace(items.subspan(items.size() / 2), centreOf, numberOf);
+    const size_t middle = std::max<size_t>(items.size() / 2 / group, 1) * group;
+    std::nth_element(items.begin(), items.begin() + static_cast<ptrdiff_t>(middle), items.end(),
+                     [&](const Item& a, const Item& b) {
+                         return std::pair(a.scope.centre[axis], a.part) < std::pair(b.scope.centre[axis], b.part);
+                     });
+    orderByPlace(items.first(middle));
+    orderByPlace(items.subspan(middle));
 }
 
-/// Calls probe(prober, items, number of the group) for groups of at most LocalTapes::mostBoxes items that follow each
-/// other, on `threads` threads (0: all), each with a prober that `make` makes; ticks for every item.
+/// Calls probe(prober, items, boxes, number of the group) for groups of at most LocalTapes::mostBoxes items that follow
+/// each other, on `threads` threads (0: all), each with a prober that `make` makes; ticks for every item. A prober has
+/// boxOf(item), in which it looks, and tapes(), which have been entered around the boxes.
 template <class Item, class Make, class Probe>
 void probeInGroups(std::span<Item> items, int threads, Progress* progress, const char* stage, Make make, Probe probe) {
+    constexpr size_t groupsAtOnce = LocalTapes::boxesPerTape;
     std::vector<decltype(make())> probers;
     probers.reserve(static_cast<size_t>(threadCount(threads)));
     for (int w = 0; w < threadCount(threads); ++w) probers.push_back(make());
     if (progress) progress->begin(stage, items.size());
     const size_t groups = (items.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes;
-    parallelFor(groups, threads, progress, [&](size_t group, int worker) {
-        const size_t first = group * LocalTapes::mostBoxes,
-                     count = std::min(LocalTapes::mostBoxes, items.size() - first);
-        probe(probers[static_cast<size_t>(worker)], items.subspan(first, count), group);
-        for (size_t i = 0; i < count; ++i) tick(progress);
+    const auto itemsOf = [&](size_t group) {
+        const size_t first = group * LocalTapes::mostBoxes;
+        return items.subspan(first, std::min(LocalTapes::mostBoxes, items.size() - first));
+    };
+    parallelFor((groups + groupsAtOnce - 1) / groupsAtOnce, threads, progress, [&](size_t step, int worker) {
+        auto& prober = probers[static_cast<size_t>(worker)];
+        const size_t first = step * groupsAtOnce, end = std::min(groups, first + groupsAtOnce);
+        std::array<std::vector<Box3f>, groupsAtOnce> boxes;
+        Box3f around;
+        for (size_t g = first; g < end; ++g)
+            for (const Item& item : itemsOf(g)) {
+                boxes[g - first].push_back(prober.boxOf(item));
+                around = hull(around, boxes[g - first].back());
+            }
+        prober.tapes().enter(around);
+        for (size_t g = first; g < end && !cancelled(progress); ++g) {
+            probe(prober, itemsOf(g), boxes[g - first], g);
+            for (size_t i = 0; i < itemsOf(g).size(); ++i) tick(progress);
+        }
     });
 }
 

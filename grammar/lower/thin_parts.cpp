@@ -77,21 +77,20 @@ public:
         : tapes_(tape), presence_(presence), cell_m_(static_cast<double>(cell_m)) {}
 
     /// Looks for at most LocalTapes::mostBoxes parts that lie beside each other.
-    void probe(std::span<Candidate> parts) {
-        std::vector<Box3f> boxes;
-        for (const Candidate& c : parts) boxes.push_back(boxOfLines(c.scope));
+    void probe(std::span<Candidate> parts, std::span<const Box3f> boxes) {
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) { parts[i].missing = missing(parts[i], tape); });
     }
 
-private:
     /// What eachLine passes: no more, for what else is near makes the shortened tape longer.
-    Box3f boxOfLines(derive::Scope scope) const {
-        const derive::Scope whole = scope;
+    Box3f boxOf(const Candidate& candidate) const {
+        derive::Scope scope = candidate.scope;
         for (int axis = 0; axis < 3; ++axis)
-            if (isThinAlong(whole, axis, cell_m_)) scope.size[axis] *= probed;
-        return boxOf(scope).as<float>();
+            if (isThinAlong(candidate.scope, axis, cell_m_)) scope.size[axis] *= probed;
+        return derive::boxOf(scope).as<float>();
     }
+    LocalTapes& tapes() { return tapes_; }
 
+private:
     double missing(const Candidate& candidate, const eval::Tape& tape) {
         const OriginId part = candidate.part;
         findCrossings(candidate, tape);
@@ -185,11 +184,12 @@ void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Pres
         thin[i].isWhole = covers && presence.isWhole(scope, thin[i].part, static_cast<double>(cell_m));
     });
     std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
-    orderByPlace(
-        std::span(thin), [](const Candidate& c) { return c.scope.centre; }, [](const Candidate& c) { return c.part; });
+    orderByPlace(std::span(thin));
     probeInGroups(
         std::span(thin), threads, progress, "thin parts", [&] { return Prober(tape, presence, cell_m); },
-        [](Prober& prober, std::span<Candidate> some, size_t) { prober.probe(some); });
+        [](Prober& prober, std::span<Candidate> some, std::span<const Box3f> boxes, size_t) {
+            prober.probe(some, boxes);
+        });
 }
 
 /// Boxes around those of boxes, one a line, that lie near each other: no more than two spacings of the lines apart

@@ -38,10 +38,12 @@ public:
     SectionProber(const eval::Tape& tape, const Box3f& bounds, float cell_m)
         : tapes_(tape), bounds_(bounds), cell_m_(static_cast<double>(cell_m)) {}
 
-    void probe(std::span<const FacedPart> parts, std::vector<ThinSection>& found) {
-        std::vector<Box3f> boxes;
-        for (const FacedPart& c : parts)
-            boxes.push_back(derive::boxOf(c.scope).inflated(farthest * cell_m_).as<float>());
+    Box3f boxOf(const FacedPart& part) const {
+        return derive::boxOf(part.scope).inflated(farthest * cell_m_).as<float>();
+    }
+    LocalTapes& tapes() { return tapes_; }
+
+    void probe(std::span<const FacedPart> parts, std::span<const Box3f> boxes, std::vector<ThinSection>& found) {
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) {
             for (int face = 0; face < 6; ++face)
                 if (parts[i].faces >> face & 1) probeFace(parts[i], face, tape, found);
@@ -205,8 +207,7 @@ std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Mo
         if (!cuts[shape] && minComponent(derivation.tree.shapes[shape].scope.size) < leastFaced * cell_m) continue;
         all.push_back({part, derive::liftedScope(derivation, shape), faces[part], cuts[shape]});
     }
-    orderByPlace(
-        std::span(all), [](const FacedPart& c) { return c.scope.centre; }, [](const FacedPart& c) { return c.part; });
+    orderByPlace(std::span(all));
     return all;
 }
 
@@ -220,8 +221,8 @@ Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& deri
     probeInGroups(
         std::span(parts), threads, progress, "thin walls and gaps",
         [&] { return SectionProber(tape, model.field.bounds, cell_m); },
-        [&](SectionProber& prober, std::span<const FacedPart> some, size_t group) {
-            prober.probe(some, found[group]);
+        [&](SectionProber& prober, std::span<const FacedPart> some, std::span<const Box3f> boxes, size_t group) {
+            prober.probe(some, boxes, found[group]);
         });
     if (cancelled(progress)) return cancelledError();
     std::vector<ThinSection> all;

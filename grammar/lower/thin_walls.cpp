@@ -75,10 +75,12 @@ public:
     WallProber(const eval::Tape& tape, const Box3f& bounds, float cell_m)
         : tapes_(tape), bounds_(bounds), cell_m_(static_cast<double>(cell_m)) {}
 
-    void probe(std::span<const WalledPart> parts, std::vector<ThinWalls>& found) {
-        std::vector<Box3f> boxes;
-        for (const WalledPart& p : parts)
-            boxes.push_back(derive::boxOf(p.scope, lineReach).inflated((depths.back() + 1) * cell_m_).as<float>());
+    Box3f boxOf(const WalledPart& part) const {
+        return derive::boxOf(part.scope, lineReach).inflated((depths.back() + 1) * cell_m_).as<float>();
+    }
+    LocalTapes& tapes() { return tapes_; }
+
+    void probe(std::span<const WalledPart> parts, std::span<const Box3f> boxes, std::vector<ThinWalls>& found) {
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) { probePart(parts[i], tape, found); });
     }
 
@@ -333,13 +335,13 @@ Result<std::vector<ThinPart>> findMissingWalls(const derive::Derivation& derivat
                                                int threads, Progress* progress, const std::vector<ThinPart>* among) {
     const auto cell = static_cast<double>(cell_m);
     std::vector<WalledPart> parts = walledParts(derivation, model, cell, among);
-    orderByPlace(
-        std::span(parts), [](const WalledPart& p) { return p.scope.centre; },
-        [](const WalledPart& p) { return p.part; });
+    orderByPlace(std::span(parts));
     std::vector<std::vector<ThinWalls>> found((parts.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes);
     probeInGroups(
         std::span(parts), threads, progress, "thin walls", [&] { return WallProber(tape, model.field.bounds, cell_m); },
-        [&](WallProber& prober, std::span<const WalledPart> some, size_t group) { prober.probe(some, found[group]); });
+        [&](WallProber& prober, std::span<const WalledPart> some, std::span<const Box3f> boxes, size_t group) {
+            prober.probe(some, boxes, found[group]);
+        });
     if (cancelled(progress)) return cancelledError();
     std::vector<std::array<Vec3f, 2>> across;
     for (const std::vector<ThinWalls>& some : found)
