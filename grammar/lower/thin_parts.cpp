@@ -24,7 +24,10 @@ constexpr int halvings = 6;                 ///< of a step around a crossing
 constexpr size_t fewestCrossings = 3;       ///< of a part that isn't buried
 constexpr double leastMissing = 0.1;        ///< share of the surface that a part in the list lacks
 constexpr double mostlyFree = 0.9;          ///< of the lines through a plate meet both its faces
-constexpr double leastMissingArea = 0.25;   ///< share of a plate's area, which is known less well
+constexpr double leastMissingArea = 0.01;   ///< share of the area of a plate that stands free
+constexpr double leastFacing = 0.7;         ///< cosine between a plate's faces and what isn't a torn edge
+constexpr double unsureArea = 4;            ///< more of that for each share of the lines that meet no face of the plate
+constexpr double mostUnsure = 0.25;         ///< at most
 constexpr double probed = 1.1 * lineReach;  ///< of a scope: where its part is looked for
 
 /// A thin part, and the share of its surface that the mesh lacks; 0 where it is buried.
@@ -66,7 +69,8 @@ void measureFacing(const mesh::Mesh& mesh, std::span<Candidate> parts, size_t pa
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
             const Vec3f p = *positions[corners[0]];
             const Vec3d twice = cross(*positions[corners[1]] - p, *positions[corners[2]] - p).as<double>();
-            plate->facing_m2 += 0.5 * std::abs(dot(twice, plate->scope.axes * alongAxis(plate->plateAxis)));
+            const double across = std::abs(dot(twice, plate->scope.axes * alongAxis(plate->plateAxis)));
+            if (across > leastFacing * length(twice)) plate->facing_m2 += 0.5 * across;
         }
 }
 
@@ -102,7 +106,8 @@ private:
             ++met, lacks += presence_.isNear(middles_[i], part) ? 0 : 1;
         }
         if (met < fewestCrossings) return 0;
-        return std::max(static_cast<double>(lacks) / static_cast<double>(met), missingOfPlate(candidate, met));
+        const double ofLines = static_cast<double>(lacks) / static_cast<double>(met);
+        return std::max(ofLines > leastMissing ? ofLines : 0, missingOfPlate(candidate, met));
     }
 
     /// What the mesh lacks of a plate that stands free, by area: of a turned one it may show posts, which lie so near
@@ -113,7 +118,8 @@ private:
         eachLine(candidate.scope, cell_m_, [&](Vec3d, int) { return ++lines, true; });
         const double free = static_cast<double>(met) / (2.0 * lines);
         const double lacks = 1 - candidate.facing_m2 / (free * facesOf(candidate.scope, candidate.plateAxis));
-        return free < mostlyFree || lacks < leastMissingArea ? 0 : lacks;
+        const double least = std::min(leastMissingArea + unsureArea * (1 - std::min(free, 1.0)), mostUnsure);
+        return free < mostlyFree || lacks < least ? 0 : lacks;
     }
 
     /// Where lines through the scope along its thin axes cross the field's surface.
@@ -278,7 +284,7 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     if (cancelled(progress)) return cancelledError();
     std::vector<ThinPart> found = std::move(*walls);
     for (const Candidate& c : thin) {
-        if (!(c.missing > leastMissing)) continue;
+        if (!(c.missing > 0)) continue;
         found.push_back({ThinPart::Kind::Part,
                          c.part,
                          -1,

@@ -13,26 +13,34 @@
 #include "grammar/lower/met_segments.h"
 #include "grammar/lower/scope_lines.h"
 #include "modeler/field/convex.h"
+#include "modeler/field/plan_parameters.h"
 
 namespace sgm::lower {
 namespace {
 
-constexpr int fewestAlong = 4, mostAlong = 16;  ///< lines along an axis
-constexpr int mostSteps = 400;                  ///< on a line
-constexpr float stepShare = 0.9f;               ///< of how far the surface is at least
-constexpr float steepest = 4;                   ///< slope of a field that is believed: fractals' is hundreds nowhere
-constexpr double leastStep = 0.06;              ///< in cells
-constexpr int halvings = 8;                     ///< of a step around a crossing
-constexpr size_t mostFollowed = 384;            ///< points of a part's surface
+constexpr int fewestAlong = 4;  ///< lines along an axis
+/// How closely a part is looked at.
+struct Density {
+    int mostAlong;        ///< lines along an axis
+    size_t mostFollowed;  ///< points of the part's surface
+};
+constexpr Density first{16, 384}, close{128, 8192};  ///< close where walls are too thin: strips may be lost
+constexpr double leastThin = 0.1;                    ///< share of a shell's surface that is too thin
+constexpr int mostSteps = 400;                       ///< on a line
+constexpr float stepShare = 0.9f;                    ///< of how far the surface is at least
+constexpr float steepest = 4;       ///< slope of a field that is believed: fractals' is hundreds nowhere
+constexpr double leastStep = 0.06;  ///< in cells
+constexpr int halvings = 8;         ///< of a step around a crossing
 /// In cells, from the surface into the solid.
 constexpr std::array depths{0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75};
 
 constexpr double leaningWall = 1.42;  ///< times a cell: a thicker wall is held as a rule
 constexpr double beyondWall = 0.5;    ///< cells beyond both surfaces of a wall within which a mesh has it
 
-constexpr size_t fewestMissing = 3;    ///< lines across a wall that the mesh lacks: a hole in it is seen
-constexpr double leastOfCut = 0.05;    ///< share of the surface of a cut that walls are missing from
-constexpr size_t mostPlaces = 100000;  ///< that are told one by one; of further parts their scope is
+constexpr size_t fewestMissing = 3;     ///< lines across a wall that the mesh lacks: a hole in it is seen
+constexpr double leastOfCut = 0.05;     ///< share of the surface of a cut that walls are missing from
+constexpr double leastOfShell = 0.004;  ///< the same of a shell
+constexpr size_t mostPlaces = 100000;   ///< that are told one by one; of further parts their scope is
 /// Times the median: what half of the walls' thicknesses differ by at most. Where two cuts touch or two faces meet in
 /// an edge the solid has any thickness down to none, which no cells hold.
 constexpr double mostSpread = 0.8;
@@ -55,6 +63,11 @@ struct ThinWalls {
     double spacing_m = 0;  ///< of the lines, at most
     size_t points = 0;     ///< of the part's surface that were looked at
     std::vector<WallLine> lines;
+    std::vector<WallLine> close;  ///< of a closer look, which decides instead
+    size_t closePoints = 0;
+
+    const std::vector<WallLine>& deciding() const { return closePoints > 0 ? close : lines; }
+    double decidingPoints() const { return static_cast<double>(closePoints > 0 ? closePoints : points); }
 };
 
 /// Axes of which z lies along a unit vector.
@@ -94,24 +107,33 @@ private:
     };
 
     void probePart(const WalledPart& part, const eval::Tape& tape, std::vector<ThinWalls>& found) {
-        ThinWalls walls{part, listLines(part.scope), 0, {}};
-        followLines(tape);
-        walls.spacing_m *= keepOwn(part.part, tape);
-        if (surface_.empty()) return;
-        walls.points = surface_.size();
-        measure(tape, walls.lines);
+        ThinWalls walls = wallsOf(part, tape, first);
+        if (part.shell_m > 0 && walls.spacing_m > cell_m_ &&
+            static_cast<double>(walls.lines.size()) > leastThin * static_cast<double>(walls.points)) {
+            ThinWalls closer = wallsOf(part, tape, close);
+            walls.close = std::move(closer.lines), walls.closePoints = closer.points;
+        }
         if (!walls.lines.empty()) found.push_back(std::move(walls));
     }
 
+    ThinWalls wallsOf(const WalledPart& part, const eval::Tape& tape, const Density& density) {
+        ThinWalls walls{part, listLines(part.scope, density.mostAlong), 0, {}, {}, 0};
+        followLines(tape);
+        walls.spacing_m *= keepOwn(part.part, tape, density.mostFollowed);
+        walls.points = surface_.size();
+        if (!surface_.empty()) measure(tape, walls.lines);
+        return walls;
+    }
+
     /// Lines along the scope's axes, as far as they lie in the bounds. Returns how far apart they are at most.
-    double listLines(const derive::Scope& scope) {
+    double listLines(const derive::Scope& scope, int mostAlong) {
         rays_.clear();
         double spacing_m = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const int u = (axis + 1) % 3, v = (axis + 2) % 3;
             const auto count = [&](int across) {
-                return static_cast<int>(
-                    std::clamp(std::ceil(scope.size[across] / cell_m_), double{fewestAlong}, double{mostAlong}));
+                return static_cast<int>(std::clamp(std::ceil(scope.size[across] / cell_m_), double{fewestAlong},
+                                                   static_cast<double>(mostAlong)));
             };
             const int alongU = count(u), alongV = count(v);
             spacing_m = std::max({spacing_m, scope.size[u] / alongU, scope.size[v] / alongV});
@@ -190,7 +212,7 @@ private:
     }
 
     /// Keeps what is the part's own surface, not too much of it. Returns how much farther apart that is than the lines.
-    double keepOwn(OriginId part, const eval::Tape& tape) {
+    double keepOwn(OriginId part, const eval::Tape& tape, size_t mostFollowed) {
         points_.clear();
         for (const Bracket& b : surface_) points_.add(b.middle().as<float>());
         const std::vector<OriginId>& owners = owners_.at(points_, tape, tapes_.workspace());
@@ -268,6 +290,15 @@ double wallOf(const derive::SolidValue& solid) {
     return least;
 }
 
+/// A scope around all of a solid: eaves stand out of it, and down where the roof is steep.
+derive::Scope around(derive::Scope scope, const derive::SolidValue& solid) {
+    for (size_t i = 0; solid.primitive && i < solid.args.size(); ++i)
+        if (const auto& row = solid.primitive->parameters;
+            i < row.size() && row[i].name == field::plan_parameters::overhang.name)
+            scope.size += Vec3d{2, 4, 2} * solid.args[i].num();
+    return scope;
+}
+
 /// Whether its faces are those of its scope (findThinSections).
 bool isBox(const derive::SolidValue& solid, const derive::Scope& scope) {
     return solid.primitive && solid.primitive->convexParts == field::convex::cube &&
@@ -292,7 +323,7 @@ std::vector<WalledPart> walledParts(const derive::Derivation& derivation, const 
         const double wall_m = wallOf(solid);
         const bool isShell = wall_m / leaningWall < cell_m;
         if (!isShell && (!cuts[id] || isBox(solid, shape.scope))) continue;
-        walled.push_back({part, derive::liftedScope(derivation, id), isShell ? wall_m : 0});
+        walled.push_back({part, around(derive::liftedScope(derivation, id), solid), isShell ? wall_m : 0});
     }
     return walled;
 }
@@ -304,16 +335,17 @@ ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, doubl
     ThinPart missing{
         .kind = isShell ? ThinPart::Kind::Part : ThinPart::Kind::Wall, .part = walls.of.part, .places = {}};
     std::vector<double> thicknesses_m, cells_m;
-    for (size_t i = 0; i < walls.lines.size(); ++i) {
-        const WallLine& line = walls.lines[i];
+    for (const WallLine& line : walls.lines)
         missing.places.push_back({line.from + line.inward * (0.5 * line.thickness_m),
                                   axesAlong(line.inward),
                                   {walls.spacing_m, walls.spacing_m, line.thickness_m}});
+    for (size_t i = 0; i < walls.deciding().size(); ++i) {
         if (isMet[i]) continue;
+        const WallLine& line = walls.deciding()[i];
         thicknesses_m.push_back(line.thickness_m), cells_m.push_back(line.thickness_m * turnOf(line.inward));
     }
     const auto lacked = static_cast<double>(thicknesses_m.size());
-    if (thicknesses_m.size() < fewestMissing || (!isShell && lacked < leastOfCut * static_cast<double>(walls.points)))
+    if (thicknesses_m.size() < fewestMissing || lacked < (isShell ? leastOfShell : leastOfCut) * walls.decidingPoints())
         return {};
     std::sort(thicknesses_m.begin(), thicknesses_m.end()), std::sort(cells_m.begin(), cells_m.end());
     const auto at = [](const std::vector<double>& sorted, double share) {
@@ -322,7 +354,7 @@ ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, doubl
     missing.thickness_m = at(thicknesses_m, 0.5);
     if (!isShell && at(thicknesses_m, 0.75) - at(thicknesses_m, 0.25) > mostSpread * missing.thickness_m) return {};
     if (isShell) missing.thickness_m = walls.of.shell_m, missing.isShell = true;
-    missing.missing = lacked / static_cast<double>(isShell ? walls.points : walls.lines.size());
+    missing.missing = lacked / (isShell ? walls.decidingPoints() : static_cast<double>(walls.lines.size()));
     missing.cell_m = std::min(std::max(at(cells_m, 0.1), 0.5 * walls.of.shell_m), cell_m / 2);
     if (placesBefore > mostPlaces) missing.places = {walls.of.scope};
     return missing;
@@ -346,7 +378,7 @@ Result<std::vector<ThinPart>> findMissingWalls(const derive::Derivation& derivat
     std::vector<std::array<Vec3f, 2>> across;
     for (const std::vector<ThinWalls>& some : found)
         for (const ThinWalls& walls : some)
-            for (const WallLine& line : walls.lines)
+            for (const WallLine& line : walls.deciding())
                 across.push_back({(line.from - line.inward * (beyondWall * cell)).as<float>(),
                                   (line.from + line.inward * (line.thickness_m + beyondWall * cell)).as<float>()});
     const std::vector<uint8_t> isMet = segmentsThatMeet(mesh, across, progress);
@@ -356,10 +388,10 @@ Result<std::vector<ThinPart>> findMissingWalls(const derive::Derivation& derivat
     std::span<const uint8_t> rest = isMet;
     for (const std::vector<ThinWalls>& some : found)
         for (const ThinWalls& walls : some) {
-            ThinPart missing = missingOf(walls, rest.first(walls.lines.size()), cell, places);
+            ThinPart missing = missingOf(walls, rest.first(walls.deciding().size()), cell, places);
             places += missing.places.size();
             if (missing.missing > 0) all.push_back(std::move(missing));
-            rest = rest.subspan(walls.lines.size());
+            rest = rest.subspan(walls.deciding().size());
         }
     std::sort(all.begin(), all.end(), [](const ThinPart& a, const ThinPart& b) { return a.part < b.part; });
     return all;

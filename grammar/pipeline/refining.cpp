@@ -12,8 +12,8 @@
 namespace sgm::pipeline {
 namespace {
 
-constexpr size_t mostGrowth = 4, leastBound = 300000;  ///< of triangles
-constexpr double cellsPerTriangle = 16;                ///< at most looked at, of the triangles that the mesh may have
+constexpr size_t mostGrowth = 4, leastBound = 1000000;  ///< of triangles
+constexpr double cellsPerTriangle = 16;                 ///< at most looked at, of the triangles that the mesh may have
 constexpr int mostHalvingsOfCells = 3;
 
 /// Cells to be halved, by how often.

@@ -213,10 +213,12 @@ public:
         coarseCells_.follow(options.threads);
     }
 
-    /// The surface and the cells that were meshed anew; these are none where it can't be done.
+    /// The surface and the cells that were meshed anew; these are none where it can't be done. Error::Budget where the
+    /// mesh would have too many triangles.
     Result<std::pair<Chunk, CellSet>> refine(CellSet cells) {
         const size_t mostCells = std::max(mostGrowth * cells.size(), leastGrowth);
-        if (guessTriangles(cells) > options_.mostTriangles) cells = {};
+        if (guessTriangles(cells) > options_.mostTriangles)
+            return Error{Error::Kind::Budget, "cells halved so often have too many triangles"};
         if (Status s = meshFinely(cells.list()); !s) return s.error();
         cells = reachedOf(cells);
         for (int fitting = 0; fitting < mostFittings && !cells.empty(); ++fitting) {
@@ -345,12 +347,16 @@ private:
 Result<CellSet> refineCells(Mesh& mesh, const eval::Tape& field, const Grid& grid, const CellSet& cells,
                             const RefineOptions& options, Progress* progress) {
     if (cells.empty() || mesh.hasPositionsOnly()) return CellSet{};
-    auto refined = Refiner(mesh, field, grid, options, progress).refine(cells);
-    if (!refined.ok() && refined.error().kind == Error::Kind::Cancelled) return refined.error();
-    if (!refined.ok() || refined->second.empty()) return CellSet{};
-    mesh.chunks.clear();
-    mesh.chunks.push_back(std::move(refined->first));
-    return std::move(refined->second);
+    for (RefineOptions now = options; now.halvings > 0; --now.halvings) {
+        auto refined = Refiner(mesh, field, grid, now, progress).refine(cells);
+        if (!refined.ok() && refined.error().kind == Error::Kind::Cancelled) return refined.error();
+        if (!refined.ok() && refined.error().kind == Error::Kind::Budget) continue;
+        if (!refined.ok() || refined->second.empty()) break;
+        mesh.chunks.clear();
+        mesh.chunks.push_back(std::move(refined->first));
+        return std::move(refined->second);
+    }
+    return CellSet{};
 }
 
 }  // namespace sgm::mesh

@@ -142,6 +142,46 @@ TEST(Refining, WallsOfAnyPlanAndSlopeAreThere) {
     }
 }
 
+/// What such a slab lacked were strips a cell wide, and its end, too little to be told by lines through it.
+TEST(Refining, TurnedSlabsOfAboutACellAreWhole) {
+    for (const double degrees : {5, 9, 20, 30})
+        for (const double thickness_m : {.3, .36, .4, .42, .45}) {
+            Context context{nullptr, 2};
+            const Model model = modelOf("grammar 2\nstart A -> cube size (18, " + std::to_string(thickness_m) +
+                                            "m, 17) turn (0deg, 0deg, " + std::to_string(degrees) + "deg)\n",
+                                        context);
+            const MeshedModel made = meshed(model, 44, 3);
+            EXPECT_TRUE(made.missing->empty()) << degrees << ' ' << thickness_m;
+            EXPECT_NEAR(mesh::measure(made.mesh).volume_m3 / (18 * 17 * thickness_m), 1, 1e-3)
+                << degrees << ' ' << thickness_m;
+        }
+}
+
+TEST(Refining, LongSlopesAndEavesAreWhole) {
+    struct Case {
+        const char* text;
+        double volume_m3, depth_m;  ///< depth: along z
+    };
+    const Case cases[] = {
+        {"start A -> footprint rect(48, 14) extrude 5m H\n"
+         "rule H -> shellBlock(.4m, .3m) + gableRoof(38deg, overhang: .6m, cover: .3m) at +y\n",
+         698.9, 15.2},
+        {"start A -> footprint rect(40, 30) extrude 6m H\n"
+         "rule H -> shellBlock(.3m, .3m) + shedRoof(20deg, overhang: .6m, cover: .3m) at +y\n",
+         999.3, 31.2},
+    };
+    for (const Case& c : cases)
+        for (const int resolution : {64, 110, 128}) {
+            Context context{nullptr, 2};
+            const Model model = modelOf("grammar 2\n" + std::string(c.text), context);
+            const MeshedModel made = meshed(model, resolution, 3);
+            EXPECT_TRUE(made.missing->empty()) << c.text << resolution;
+            const auto figures = mesh::measure(made.mesh);
+            EXPECT_NEAR(figures.volume_m3, c.volume_m3, .002 * c.volume_m3) << c.text << resolution;
+            EXPECT_NEAR(static_cast<double>(figures.bounds.size().z), c.depth_m, .2) << c.text << resolution;
+        }
+}
+
 TEST(Refining, WhatIsTooThinEvenForHalvedCellsIsNamed) {
     Context context{nullptr, 2};
     const Model model = modelOf("grammar 2\nstart A -> cube size 8m + cube size (.05m, 4m, .05m) at +y\n", context);
