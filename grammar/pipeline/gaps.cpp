@@ -177,7 +177,7 @@ public:
         const auto reach = [&](derive::ShapeId from, bool nearPiece) {
             for (size_t i = 0; i < missing_.size(); ++i) {
                 if (reached[i] || !touch(from, shapeOf(i))) continue;
-                if (nearPiece && derive::penetration(around, shapes_[shapeOf(i)].scope) < -cell_m) continue;
+                if (nearPiece && !isNear(around, missing_[i], cell_m)) continue;
                 reached[i] = true;
                 open.push_back(i);
             }
@@ -219,6 +219,13 @@ private:
             wall.most_m3 += place.size.x * place.size.y * place.size.z;
         }
         fragmented_.push_back(wall);
+    }
+
+    /// Whether a part comes so near to a piece: by its scope, and a shell, which is hollow, by one of its walls.
+    bool isNear(const derive::Scope& piece, const lower::ThinPart& part, double cell_m) const {
+        const auto isWithin = [&](const derive::Scope& s) { return derive::penetration(piece, s) >= -cell_m; };
+        return part.isShell ? std::any_of(part.places.begin(), part.places.end(), isWithin)
+                            : isWithin(shapes_[model_.lowered->shapeOf[part.part]].scope);
     }
 
     derive::ShapeId shapeOf(size_t i) const { return model_.lowered->shapeOf[missing_[i].part]; }

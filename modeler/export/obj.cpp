@@ -146,9 +146,12 @@ static Status writeMaterials(const ExportInput& input, const std::set<uint32_t>&
         out.text("# sgm\n");
         for (const uint32_t index : used) {
             const Material& m = input.provenance->materials[index];
-            out.text(fmt::format("newmtl {}\nKd {} {} {}\nPr {}\nPm {}\nillum 2\n", names[index], m.color.x, m.color.y,
-                                 m.color.z, m.roughness, m.metallic));
-            if (m.texture && option(input, "uv", "scope") != "none") out.text(mapsOf(*m.texture, target.parent_path()));
+            const bool hasMaps = m.texture && option(input, "uv", "scope") != "none";
+            // Readers multiply the colour with the picture, which stands in its place.
+            const Vec3f color = hasMaps && m.texture->color ? Vec3f{1, 1, 1} : m.color;
+            out.text(fmt::format("newmtl {}\nKd {} {} {}\nPr {}\nPm {}\nillum 2\n", names[index], color.x, color.y,
+                                 color.z, m.roughness, m.metallic));
+            if (hasMaps) out.text(mapsOf(*m.texture, target.parent_path()));
         }
         return out.finish();
     });

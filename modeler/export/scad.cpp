@@ -6,6 +6,7 @@
 
 #include "modeler/export/formats.h"
 #include "modeler/export/out_file.h"
+#include "modeler/export/surface.h"
 #include "modeler/field/solid_tree.h"
 
 namespace sgm::exporter {
@@ -60,9 +61,9 @@ std::string solidText(const field::PlacedSolid& s, const Box3d& bounds) {
 /// The solid with its colour, and where it is from as a comment.
 std::string leafText(const field::PlacedSolid& s, const field::SolidTree& tree, const Provenance& provenance) {
     const Part& part = provenance.parts[s.origin];
-    const Vec3f c = provenance.materials[part.material].color;
-    return fmt::format("color([{}, {}, {}]) {}  // {}:{} {}", c.x, c.y, c.z, solidText(s, tree.bounds),
-                       oneLine(part.file()), part.line(), oneLine(part.path.text()));
+    const Rgb8 c = srgb(provenance.materials[part.material].color);  // OpenSCAD shows colours as they are written
+    return fmt::format("color([{:.3f}, {:.3f}, {:.3f}]) {}  // {}:{} {}", c[0] / 255.0, c[1] / 255.0, c[2] / 255.0,
+                       solidText(s, tree.bounds), oneLine(part.file()), part.line(), oneLine(part.path.text()));
 }
 
 }  // namespace

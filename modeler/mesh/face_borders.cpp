@@ -29,13 +29,13 @@ void FaceCreases::searchBorder(Gap& gap, bool isFlat) {
     gap.state = State::Border;
     gap.rounds = 0;
     gap.looks = isFlat ? mostLooks : 0;
-    gap.lineA = gap.a, gap.lineB = gap.b;
-    gap.valueA = gap.valueB = 0;
+    gap.nearA.point = gap.a, gap.nearB.point = gap.b;
+    gap.nearA.value = gap.nearB.value = 0;
 }
 
 void FaceCreases::askForBorder(const FaceSegment& segment, const Gap& gap) {
     const auto add = [&](Vec3d p) { samples_.add(tapes_, segment.brick, p.as<float>()); };
-    const Vec3d low = gap.lineA.at.as<double>(), way = (gap.lineB.at - gap.lineA.at).as<double>();
+    const Vec3d low = gap.nearA.point.at.as<double>(), way = (gap.nearB.point.at - gap.nearA.point.at).as<double>();
     if (gap.state == State::Below)
         return add(low + way * 0.5 - normalized(gap.a.gradient.as<double>()) * (depthShare * length(way)));
     if (gap.state == State::Beside) {
@@ -62,15 +62,15 @@ bool FaceCreases::takeBelow(const FaceSegment& segment, Gap& gap, size_t sample)
     gap.looked = 0;
     // The point nearest to it in the plane of the face.
     const int across = segment.axis;
-    gap.wall.value = value + gap.wall.point.gradient[across] * (gap.lineA.at[across] - gap.wall.point.at[across]);
-    gap.wall.point.at[across] = gap.lineA.at[across];
-    return isKnown(value) && meetWall(segment, gap, {gap.lineA, 0});
+    gap.wall.value = value + gap.wall.point.gradient[across] * (gap.nearA.point.at[across] - gap.wall.point.at[across]);
+    gap.wall.point.at[across] = gap.nearA.point.at[across];
+    return isKnown(value) && meetWall(segment, gap, {gap.nearA.point, 0});
 }
 
 bool FaceCreases::meetWall(const FaceSegment& segment, Gap& gap, const LinearField& surface) const {
     if (!crossInFace(FaceAxes(segment.axis), surface, gap.wall, gap.at)) return false;
-    const Vec3d way = (gap.lineB.at - gap.lineA.at).as<double>();
-    const double along = dot((gap.at - gap.lineA.at).as<double>(), way);
+    const Vec3d way = (gap.nearB.point.at - gap.nearA.point.at).as<double>();
+    const double along = dot((gap.at - gap.nearA.point.at).as<double>(), way);
     return along >= 0 && along <= dot(way, way) && mayLieAt(segment, gap.at);
 }
 
@@ -83,8 +83,7 @@ bool FaceCreases::takeBeside(const FaceSegment& segment, Gap& gap, size_t sample
     const double near = besideShare * grid_->cell_m;
     const auto liesOn = [&](const LinearField& f) { return std::abs(f.value) <= near * length(f.point.gradient); };
     if (!liesOn(a) || !liesOn(b)) return ++gap.looked < besideRounds && meetWall(segment, gap, a);
-    gap.lineA = a.point, gap.valueA = a.value;
-    gap.lineB = b.point, gap.valueB = b.value;
+    gap.nearA = a, gap.nearB = b;
     gap.crossing = gap.at;
     gap.state = State::Done;
     return true;
@@ -114,28 +113,28 @@ PiecePoint FaceCreases::inBracket(const FaceSegment& segment, const PiecePoint& 
 /// The bracket becomes that part of itself where the first piece ends.
 void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sample) {
     Gap& gap = gaps_[g];
-    const double bracket = length((gap.lineB.at - gap.lineA.at).as<double>());
+    const double bracket = length((gap.nearB.point.at - gap.nearA.point.at).as<double>());
     const bool isWide = bracket > mergedShare * grid_->cell_m;  // else the breaks beside a third piece become one
     for (size_t k = 1; k < borderParts; ++k) {
         const double most = shareOfPart(std::min(k, borderParts - k)) * bracket;
-        const PiecePoint point = inBracket(segment, gap.lineA, most, sample + k - 1);
+        const PiecePoint point = inBracket(segment, gap.nearA.point, most, sample + k - 1);
         if (point.label == gap.a.label) {
-            gap.lineA = point;
+            gap.nearA.point = point;
             continue;
         }
         if (point.label != gap.b.label && gap.splits < mostSplits && isWide && mayLieAt(segment, point.at))
             return split(g, point);
         if (point.label == gap.b.label)
-            gap.lineB = point;
+            gap.nearB.point = point;
         else
-            gap.lineB.at = point.at;
+            gap.nearB.point.at = point.at;
         break;
     }
     if (++gap.rounds < borderRounds) {
         if (gap.looks > 0) --gap.looks, gap.state = State::Below;
         return;
     }
-    const Vec3f found = between(gap.lineA.at, gap.lineB.at, 0.5);
+    const Vec3f found = between(gap.nearA.point.at, gap.nearB.point.at, 0.5);
     const bool isInside = mayLieAt(segment, found);
     gap.at = isInside ? found : onLine(gap, found);
     if (!gap.leaves) gap.crossing = found, gap.leaves = !isInside;

@@ -39,7 +39,7 @@ uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Wor
         Gap gap;
         gap.segment = s;
         gap.a = segments[s].ends[0], gap.b = segments[s].ends[1];
-        gap.valueA = segments[s].values[0], gap.valueB = segments[s].values[1];
+        gap.nearA.value = segments[s].values[0], gap.nearB.value = segments[s].values[1];
         takeEnds(segments[s], gap, gap.a, gap.b);
         gaps_.push_back(gap);
         open_.push_back(s);
@@ -105,7 +105,7 @@ uint64_t FaceCreases::confirmCrossings(const std::vector<FaceSegment>& segments,
 /// Moves a crossing along its crease to a little before a third piece, the nearer the farther it lay beyond. Whether
 /// that is near enough.
 bool FaceCreases::moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const {
-    const Vec3d along = normalized(cross(gap.lineA.gradient.as<double>(), gap.lineB.gradient.as<double>()));
+    const Vec3d along = normalized(cross(gap.nearA.point.gradient.as<double>(), gap.nearB.point.gradient.as<double>()));
     const Vec3d slope = third.gradient.as<double>();
     const double rise = dot(slope, along);
     if (!(std::abs(rise) > parallelSine * length(slope))) return false;
@@ -134,7 +134,8 @@ void FaceCreases::take(const FaceSegment& segment, uint32_t gap, size_t sample) 
     switch (gaps_[gap].state) {
         case State::Ends: {
             Gap& split = gaps_[gap];
-            const PiecePoint a = samples_.point(sample, split.valueA), b = samples_.point(sample + 1, split.valueB);
+            const PiecePoint a = samples_.point(sample, split.nearA.value),
+                             b = samples_.point(sample + 1, split.nearB.value);
             return takeEnds(segment, split, a, b);
         }
         case State::Crease:
@@ -146,10 +147,10 @@ void FaceCreases::take(const FaceSegment& segment, uint32_t gap, size_t sample) 
 
 /// The ends of a gap lie on the surface: their derivatives begin the search.
 void FaceCreases::takeEnds(const FaceSegment& segment, Gap& gap, const PiecePoint& a, const PiecePoint& b) {
-    gap.lineA = a, gap.lineB = b;
-    gap.lineA.label = gap.a.label, gap.lineB.label = gap.b.label;
-    gap.lineA.origin = gap.a.origin, gap.lineB.origin = gap.b.origin;
-    gap.a.gradient = gap.lineA.gradient, gap.b.gradient = gap.lineB.gradient;
+    gap.nearA.point = a, gap.nearB.point = b;
+    gap.nearA.point.label = gap.a.label, gap.nearB.point.label = gap.b.label;
+    gap.nearA.point.origin = gap.a.origin, gap.nearB.point.origin = gap.b.origin;
+    gap.a.gradient = gap.nearA.point.gradient, gap.b.gradient = gap.nearB.point.gradient;
     aim(segment, gap);
 }
 
@@ -157,7 +158,7 @@ void FaceCreases::takeEnds(const FaceSegment& segment, Gap& gap, const PiecePoin
 void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
     const bool first = gap.state == State::Ends;
     const Vec3f before = gap.at;
-    if (!crossInFace(FaceAxes(segment.axis), {gap.lineA, gap.valueA}, {gap.lineB, gap.valueB}, gap.at)) {
+    if (!crossInFace(FaceAxes(segment.axis), gap.nearA, gap.nearB, gap.at)) {
         if (first) projectOntoCrease(gap, between(gap.a.at, gap.b.at, 0.5));
         return searchBorder(gap, first && !gap.leaves);
     }
@@ -176,12 +177,13 @@ void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
 /// The crease lies outside the face: the crossing is its point nearest to `from`, so that points keep their order along
 /// it.
 void FaceCreases::projectOntoCrease(Gap& gap, Vec3f from) const {
-    const Vec3d p = from.as<double>(), a = gap.lineA.gradient.as<double>(), b = gap.lineB.gradient.as<double>();
+    const Vec3d p = from.as<double>(), a = gap.nearA.point.gradient.as<double>(),
+                b = gap.nearB.point.gradient.as<double>();
     const double aa = dot(a, a), bb = dot(b, b), ab = dot(a, b), det = aa * bb - ab * ab;
     gap.leaves = false;
     if (!(det > parallelSquare * aa * bb)) return;
-    const double fa = gap.valueA + dot(a, p - gap.lineA.at.as<double>());
-    const double fb = gap.valueB + dot(b, p - gap.lineB.at.as<double>());
+    const double fa = gap.nearA.value + dot(a, p - gap.nearA.point.at.as<double>());
+    const double fb = gap.nearB.value + dot(b, p - gap.nearB.point.at.as<double>());
     gap.crossing = (p - a * ((fa * bb - fb * ab) / det) - b * ((fb * aa - fa * ab) / det)).as<float>();
     gap.leaves = length(gap.crossing - from) <= leavingReach * grid_->cell_m;
 }
@@ -197,9 +199,9 @@ void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t samp
         if (!isKnown(value)) {
             known = false;
         } else if (probe.label == gap.a.label) {
-            gap.lineA = probe, gap.valueA = value;
+            gap.nearA.point = probe, gap.nearA.value = value;
         } else if (probe.label == gap.b.label) {
-            gap.lineB = probe, gap.valueB = value;
+            gap.nearB.point = probe, gap.nearB.value = value;
         } else if (gap.splits < mostSplits) {
             PiecePoint third = probe;
             const FaceAxes plane(segment.axis);
@@ -260,7 +262,7 @@ void FaceCreases::separate(std::vector<FaceSegment>& segments) {
             const bool crosses = gap.leaves || mayLieAt(segments[s], gap.crossing);
             Break next{gap.at,
                        crosses ? gap.crossing : gap.at,
-                       {onSurface(gap.lineA, gap.valueA), onSurface(gap.lineB, gap.valueB)}};
+                       {onSurface(gap.nearA.point, gap.nearA.value), onSurface(gap.nearB.point, gap.nearB.value)}};
             if (!chain_.empty() && length(chain_.back().at - gap.at) < mergedShare * grid_->cell_m) {
                 next.sides[0] = chain_.back().sides[0];
                 next.crossing = next.at;

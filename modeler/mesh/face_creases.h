@@ -49,9 +49,8 @@ private:
         uint8_t rounds = 0, splits = 0;
         uint8_t looks = 0, looked = 0;  ///< below a border that are left, and beside it that were taken
         PiecePoint a, b;                ///< where the pieces are known
-        PiecePoint lineA, lineB;        ///< where their fields were looked at last, nearer to the crease
-        float valueA = 0, valueB = 0;
-        LinearField wall;  ///< between two parts, looked at below the surface
+        LinearField nearA, nearB;       ///< their fields where they were looked at last, nearer to the crease
+        LinearField wall;               ///< between two parts, looked at below the surface
         Vec3f at;
         Vec3f crossing;       ///< of the two lines, before it was moved into the face
         bool leaves = false;  ///< the crossing lies outside the face, and both pieces were found there

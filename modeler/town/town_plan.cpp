@@ -80,7 +80,10 @@ std::string svgOf(const TownPlan& plan) {
 }
 
 std::string geoJsonOf(const TownPlan& plan) {
-    std::string out = "{\"type\":\"FeatureCollection\",\"features\":[\n";
+    // Without a name a small town's metres would be read as degrees.
+    std::string out =
+        "{\"type\":\"FeatureCollection\",\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"urn:sgm:crs:metres\"}},"
+        "\"features\":[\n";
     bool first = true;
     for (const PlanFeature& f : plan.features) {
         if (f.area.polygons.empty()) continue;

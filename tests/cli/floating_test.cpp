@@ -166,6 +166,17 @@ TEST_F(Cli, AThinPartElsewhereOnTheShapeOfAFloatingPieceDoesNotHoldIt) {
     EXPECT_EQ(run.out.find("thick, holds it"), std::string::npos) << run.out;
 }
 
+TEST_F(Cli, AShellAroundAFloatingPieceDoesNotHoldIt) {
+    const std::filesystem::path file = scratch_.write(
+        "room.sgm",
+        "grammar 2\nstart S -> size (18, 3, 14) Room\n"
+        "rule Room -> cube size (20, .1, 16) move (0, -50% - .05m, 0) + cube size (2, 1, 2) + shellBlock(.1m, 0m) "
+        "footprint round(64)\n");
+    const Outcome run = sgm("check " + file.string());
+    EXPECT_NE(run.out.find("a gap of 1 m lies between"), std::string::npos) << run.out;
+    EXPECT_EQ(run.out.find("thick, holds it"), std::string::npos) << run.out;
+}
+
 TEST_F(Cli, PartsThatTheCellsOfAnObjectLackAreTold) {
     const std::string file = grammar(
         "start Town -> cube size (40, 4, 40) : G\n"

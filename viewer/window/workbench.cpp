@@ -156,23 +156,24 @@ void Workbench::exportTo(document::ExportRequest request) {
         say(s.error().message, true);
 }
 
+/// Shows a place in the text and its rule.
+static void reveal(Workbench& bench, const syntax::SourceSpan& span) {
+    if (!span.source || !bench.shown() || span.source != bench.shown()->grammar->sources.front().get()) return;
+    bench.panels.reveal = {span.begin, span.end};
+    bench.panels.revealRule = span.begin;
+}
+
 void Workbench::select(derive::ShapeId shape, bool quiet) {
     selected_ = shape;
     view.face.reset();
     document.select(shape == derive::none ? "" : tree()->path(shape, true));
-    if (shape != derive::none && !quiet) reveal(tree()->shapes[shape].span);
+    if (shape != derive::none && !quiet) reveal(*this, tree()->shapes[shape].span);
 }
 
 void Workbench::selectLive(derive::ShapeId shape) {
     document.select(stepper->tree().path(shape, true));
     resolveSelection();
-    reveal(stepper->tree().shapes[shape].span);
-}
-
-void Workbench::reveal(const syntax::SourceSpan& span) {
-    if (!span.source || !shown() || span.source != shown()->grammar->sources.front().get()) return;
-    panels.reveal = {span.begin, span.end};
-    panels.revealRule = span.begin;
+    reveal(*this, stepper->tree().shapes[shape].span);
 }
 
 void Workbench::resolveSelection() {

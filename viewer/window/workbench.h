@@ -200,8 +200,6 @@ private:
     /// Goes over to another document; its model comes later, the field of the one before stays until then.
     void show(document::Document other);
     void resolveSelection();
-    /// Shows a place in the text and its rule.
-    void reveal(const syntax::SourceSpan& span);
 
     bool working() const { return session.busy() || uploader.busy(); }
     /// Leads the steps over to a new text.
