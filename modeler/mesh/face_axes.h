@@ -23,6 +23,14 @@ struct LinearField {
     float value = 0;  ///< of the field at the point
 };
 
+/// Moves a point within the plane of the face to where its piece's field is zero; not where that runs along the face.
+inline void moveInFace(const FaceAxes& plane, PiecePoint& point, float value) {
+    const double square = plane.dot(point.gradient, point.gradient);
+    if (!(square > 0)) return;
+    for (const int axis : {plane.u, plane.v})
+        point.at[axis] -= static_cast<float>(value * point.gradient[axis] / square);
+}
+
 inline Vec3f between(Vec3f a, Vec3f b, double share) {
     return (a.as<double>() + (b - a).as<double>() * share).as<float>();
 }

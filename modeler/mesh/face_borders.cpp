@@ -102,11 +102,7 @@ PiecePoint FaceCreases::inBracket(const FaceSegment& segment, const PiecePoint& 
         return point;
     }
     const FaceAxes plane(segment.axis);
-    const double square = plane.dot(point.gradient, point.gradient);
-    if (square > 0 && std::abs(value) <= most * std::sqrt(square)) {
-        point.at[plane.u] -= static_cast<float>(value * point.gradient[plane.u] / square);
-        point.at[plane.v] -= static_cast<float>(value * point.gradient[plane.v] / square);
-    }
+    if (std::abs(value) <= most * plane.length(point.gradient)) moveInFace(plane, point, value);
     return point;
 }
 

@@ -20,11 +20,12 @@ constexpr double leavingReach = 2.0;        ///< of a cell, that a crossing may 
 constexpr double stopShare = 0x1p-10;       ///< of a cell, between a crossing and the piece that ends its crease
 constexpr float confirmShare = 0.0625f;     ///< of a cell times the slope: the field beside a confirmed crossing
 
-/// A point of the piece's plane, from one where the piece's field has a value.
-PiecePoint onSurface(PiecePoint point, float value) {
+/// The nearest point at which a piece's field is zero.
+PiecePoint onSurface(const LinearField& field) {
+    PiecePoint point = field.point;
     const Vec3d g = point.gradient.as<double>();
     const double square = dot(g, g);
-    if (square > 0) point.at = (point.at.as<double>() - g * (value / square)).as<float>();
+    if (square > 0) point.at = (point.at.as<double>() - g * (field.value / square)).as<float>();
     return point;
 }
 
@@ -199,17 +200,12 @@ void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t samp
         if (!isKnown(value)) {
             known = false;
         } else if (probe.label == gap.a.label) {
-            gap.nearA.point = probe, gap.nearA.value = value;
+            gap.nearA = {probe, value};
         } else if (probe.label == gap.b.label) {
-            gap.nearB.point = probe, gap.nearB.value = value;
+            gap.nearB = {probe, value};
         } else if (gap.splits < mostSplits) {
             PiecePoint third = probe;
-            const FaceAxes plane(segment.axis);
-            const double square = plane.dot(probe.gradient, probe.gradient);
-            if (square > 0) {
-                third.at[plane.u] -= static_cast<float>(value * probe.gradient[plane.u] / square);
-                third.at[plane.v] -= static_cast<float>(value * probe.gradient[plane.v] / square);
-            }
+            moveInFace(FaceAxes(segment.axis), third, value);
             if (mayLieAt(segment, third.at)) return split(g, third);
             known = false;
         } else {
@@ -260,9 +256,7 @@ void FaceCreases::separate(std::vector<FaceSegment>& segments) {
             if (chain_.empty() && g == static_cast<int32_t>(s)) segments[s].ends[0].gradient = gap.a.gradient;
             segments[s].ends[1].gradient = gap.b.gradient;
             const bool crosses = gap.leaves || mayLieAt(segments[s], gap.crossing);
-            Break next{gap.at,
-                       crosses ? gap.crossing : gap.at,
-                       {onSurface(gap.nearA.point, gap.nearA.value), onSurface(gap.nearB.point, gap.nearB.value)}};
+            Break next{gap.at, crosses ? gap.crossing : gap.at, {onSurface(gap.nearA), onSurface(gap.nearB)}};
             if (!chain_.empty() && length(chain_.back().at - gap.at) < mergedShare * grid_->cell_m) {
                 next.sides[0] = chain_.back().sides[0];
                 next.crossing = next.at;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "modeler/mesh/corners.h"
+#include "modeler/mesh/polyline.h"
 #include "modeler/mesh/triangulate.h"
 
 namespace sgm::tiles {
@@ -172,7 +173,7 @@ private:
         gather(edge, fixed);
         if (placeOf(chain_.back()) < placeOf(chain_.front())) std::reverse(chain_.begin(), chain_.end());
         for (const uint32_t v : chain_) seen[v] = true;
-        keepWhatBends(0, chain_.size() - 1, tolerance_m);
+        keepWhatBends(tolerance_m);
     }
 
     /// A border that no other meets.
@@ -185,33 +186,17 @@ private:
                     chain_.end());
         if (placeOf(chain_.back()) < placeOf(chain_[1])) std::reverse(chain_.begin() + 1, chain_.end());
         for (const uint32_t v : chain_) seen[v] = true;
-        keep_[chain_.front()] = true;
         chain_.push_back(chain_.front());
-        keepWhatBends(0, chain_.size() - 1, tolerance_m);
+        keepWhatBends(tolerance_m);
     }
 
-    /// Keeps the vertex of a part of the chain that lies farthest from the line between its ends, and so on in both
-    /// halves, while it is farther than the tolerance (Douglas and Peucker 1973).
-    void keepWhatBends(size_t first, size_t last, double tolerance_m) {
-        std::vector<std::pair<size_t, size_t>> parts{{first, last}};
-        while (!parts.empty()) {
-            const auto [a, b] = parts.back();
-            parts.pop_back();
-            const Vec3d from = positions_[chain_[a]].as<double>(), way = positions_[chain_[b]].as<double>() - from;
-            const double square = dot(way, way);
-            double most = tolerance_m;
-            size_t farthest = a;
-            for (size_t i = a + 1; i < b; ++i) {
-                const Vec3d d = positions_[chain_[i]].as<double>() - from;
-                const double along = square > 0 ? std::clamp(dot(d, way) / square, 0.0, 1.0) : 0;
-                const double off = length(d - way * along);
-                if (off > most) most = off, farthest = i;
-            }
-            if (farthest == a) continue;
-            keep_[chain_[farthest]] = true;
-            parts.emplace_back(a, farthest);
-            parts.emplace_back(farthest, b);
-        }
+    void keepWhatBends(double tolerance_m) {
+        std::vector<Vec3f> points;
+        for (const uint32_t v : chain_) points.push_back(positions_[v]);
+        std::vector<bool> keep(chain_.size(), false);
+        mesh::simplifyPolyline(points, false, tolerance_m, keep);
+        for (size_t i = 0; i < chain_.size(); ++i)
+            if (keep[i]) keep_[chain_[i]] = true;
     }
 
     const std::span<const Vec3f> positions_;
