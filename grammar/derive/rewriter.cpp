@@ -206,6 +206,14 @@ bool Rewriter::usable(Application a) {
            (!rule.when || holds(*rule.when, interpreter_.placeOf(a.shape)));
 }
 
+std::vector<ShapeId> Rewriter::usableBy(uint32_t rule, size_t most) {
+    std::vector<ShapeId> found;
+    const ShapeTree& tree = builder_.tree();
+    for (ShapeId s = tree.shapes.empty() ? none : 0; s != none && found.size() < most; s = tree.next(s))
+        if (usable({rule, s})) found.push_back(s);
+    return found;
+}
+
 Result<ShapeId> Rewriter::meant(uint32_t index, const std::string& place) {
     const Rule& rule = grammar_.rules[index];
     const ShapeTree& tree = builder_.tree();
@@ -216,9 +224,7 @@ Result<ShapeId> Rewriter::meant(uint32_t index, const std::string& place) {
         if (!usable({index, s})) return refuse(fmt::format("rule '{}' doesn't match '{}' here", rule.name, place));
         return s;
     }
-    std::vector<ShapeId> found;
-    for (const ShapeId s : live())
-        if (usable({index, s})) found.push_back(s);
+    const std::vector<ShapeId> found = usableBy(index);
     if (found.size() == 1) return found[0];
     if (found.empty())
         return refuse(

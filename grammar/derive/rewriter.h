@@ -34,6 +34,8 @@ public:
 
     /// May the rule rewrite the shape as things stand: alive, matched, guard and all?
     bool usable(Application application);
+    /// The shapes that the rule may rewrite, in tree order, at most so many.
+    std::vector<ShapeId> usableBy(uint32_t rule, size_t most = SIZE_MAX);
     /// The live shape that "RULE at PLACE" means. Without a place it must be the only one that the rule may rewrite.
     Result<ShapeId> meant(uint32_t rule, const std::string& place);
     /// Live shapes in tree order.

@@ -27,6 +27,7 @@ Result<std::shared_ptr<Session::State>> Session::begun(std::shared_ptr<const rul
     state->rewriter.start(grammar->starts[options.start], options);
     if (state->builder.monitor().failed()) return state->builder.monitor().takeFailure();
     state->builder.bonds().settle();
+    state->builder.monitor().resume(nullptr);
     return state;
 }
 
@@ -40,12 +41,16 @@ Result<Session> Session::begin(std::shared_ptr<const rules::Grammar> grammar, Op
     return session;
 }
 
-Result<std::shared_ptr<Session::State>> Session::replayed(const std::vector<Applications>& steps) const {
-    auto state = begun(grammar_, options_, nullptr);
+Result<std::shared_ptr<Session::State>> Session::replayed(std::span<const Applications> steps,
+                                                          Progress* progress) const {
+    auto state = begun(grammar_, options_, progress);
     if (!state.ok()) return state;
+    Monitor& monitor = (*state)->builder.monitor();
+    monitor.resume(progress);
     for (const Applications& step : steps)
         for (const Application& a : step) (*state)->rewriter.apply(a);
-    if ((*state)->builder.monitor().failed()) return (*state)->builder.monitor().takeFailure();
+    monitor.resume(nullptr);
+    if (monitor.failed()) return monitor.takeFailure();
     (*state)->builder.bonds().settle();
     return state;
 }
@@ -73,7 +78,7 @@ Result<ShapeId> Session::meant(uint32_t rule, const std::string& place) {
 Status Session::apply(Application application, Progress* progress) {
     state_->builder.monitor().resume(progress);
     state_->rewriter.apply(application);
-    return settled({application});
+    return keep({application});
 }
 
 Status Session::applyRest(Progress* progress) {
@@ -81,40 +86,43 @@ Status Session::applyRest(Progress* progress) {
     state_->builder.monitor().resume(progress);
     state_->rewriter.automatic();
     const auto& all = state_->rewriter.applied();
-    return settled({all.begin() + static_cast<ptrdiff_t>(before), all.end()});
+    return keep({all.begin() + static_cast<ptrdiff_t>(before), all.end()});
 }
 
-/// Keeps a step that went well; takes one back that failed.
-Status Session::settled(Applications step) {
+/// Ends a step. One that failed is taken back.
+Status Session::settle() {
     state_->builder.monitor().resume(nullptr);
     state_->builder.bonds().settle();
-    if (state_->builder.monitor().failed()) {
-        const Error error = state_->builder.monitor().takeFailure();
-        auto state = replayed(done_);
-        if (!state.ok()) return state.error();
-        state_ = std::move(*state);
-        return error;
-    }
-    if (step.empty()) return Done{};
+    if (!state_->builder.monitor().failed()) return Done{};
+    const Error error = state_->builder.monitor().takeFailure();
+    auto state = replayed(done_, nullptr);
+    if (!state.ok()) return state.error();
+    state_ = std::move(*state);
+    return error;
+}
+
+Status Session::keep(Applications step) {
+    if (const Status settled = settle(); !settled.ok() || step.empty()) return settled;
     done_.push_back(std::move(step));
     undone_.clear();
     return Done{};
 }
 
-Status Session::undo() {
+Status Session::undo(Progress* progress) {
     if (done_.empty()) return Done{};
-    undone_.push_back(std::move(done_.back()));
-    done_.pop_back();
-    auto state = replayed(done_);
+    auto state = replayed(std::span(done_).first(done_.size() - 1), progress);
     if (!state.ok()) return state.error();
     state_ = std::move(*state);
+    undone_.push_back(std::move(done_.back()));
+    done_.pop_back();
     return Done{};
 }
 
-Status Session::redo() {
+Status Session::redo(Progress* progress) {
     if (undone_.empty()) return Done{};
+    state_->builder.monitor().resume(progress);
     for (const Application& a : undone_.back()) state_->rewriter.apply(a);
-    state_->builder.bonds().settle();
+    if (const Status settled = settle(); !settled.ok()) return settled;
     done_.push_back(std::move(undone_.back()));
     undone_.pop_back();
     return Done{};
@@ -137,29 +145,31 @@ std::string placeOf(const ShapeTree& tree, ShapeId id) {
 
 }  // namespace
 
-Result<std::vector<rules::Derive::Step>> Session::way() const {
-    auto state = begun(grammar_, options_, nullptr);
+Result<std::vector<rules::Derive::Step>> Session::way(Progress* progress) const {
+    auto state = begun(grammar_, options_, progress);
     if (!state.ok()) return state.error();
     Rewriter& rewriter = (*state)->rewriter;
+    Monitor& monitor = (*state)->builder.monitor();
     std::vector<rules::Derive::Step> steps;
     for (const Applications& step : done_)
         for (const Application& a : step) {
+            if (cancelled(progress)) return cancelledError();
             const auto& rule = grammar_->rules[a.rule];
             if (!rewriter.usable(a))
                 return Error{Error::Kind::Input,
                              fmt::format("step {}, rule '{}', can't stand in a 'derive' line: its guard counts shapes "
                                          "that stood otherwise when it was chosen",
                                          steps.size() + 1, rule.name)};
-            const auto meant = rewriter.meant(a.rule, "");
-            if ((*state)->builder.monitor().failed()) (void)(*state)->builder.monitor().takeFailure();
-            steps.push_back({a.rule, meant.ok() ? "" : placeOf((*state)->derivation.tree, a.shape), {}});
+            const bool only = rewriter.usableBy(a.rule, 2).size() == 1;
+            if (monitor.failed()) (void)monitor.takeFailure();  // to ask changes nothing
+            steps.push_back({a.rule, only ? "" : placeOf((*state)->derivation.tree, a.shape), {}});
             rewriter.apply(a);
         }
     return steps;
 }
 
-Result<Derivation> Session::derivation() const {
-    auto state = replayed(done_);
+Result<Derivation> Session::derivation(Progress* progress) const {
+    auto state = replayed(done_, progress);
     if (!state.ok()) return state.error();
     (*state)->builder.finish();
     return std::move((*state)->derivation);

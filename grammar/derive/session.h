@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "grammar/derive/rewriter.h"
 
@@ -32,23 +33,26 @@ public:
     Status applyRest(Progress* progress = nullptr);
     bool canUndo() const { return !done_.empty(); }
     bool canRedo() const { return !undone_.empty(); }
-    /// Takes the last step back, or does it again. Nothing happens where there is none.
-    Status undo();
-    Status redo();
+    /// Takes the last step back, or does it again. Nothing happens where there is none; after an error everything is as
+    /// before.
+    Status undo(Progress* progress = nullptr);
+    Status redo(Progress* progress = nullptr);
 
     /// The way so far; a step has a place where its rule matched several shapes. Error::Input when no `derive` line can
     /// say it: an automatic step whose guard, a count, no longer holds when its turn in the way comes.
-    Result<std::vector<rules::Derive::Step>> way() const;
-    /// The finished derivation of the way so far.
-    Result<Derivation> derivation() const;
+    /// Derives anew.
+    Result<std::vector<rules::Derive::Step>> way(Progress* progress = nullptr) const;
+    /// The finished derivation of the way so far. Derives anew.
+    Result<Derivation> derivation(Progress* progress = nullptr) const;
 
 private:
     struct State;
     using Applications = std::vector<Application>;
     static Result<std::shared_ptr<State>> begun(std::shared_ptr<const rules::Grammar> grammar, const Options& options,
                                                 Progress* progress);
-    Result<std::shared_ptr<State>> replayed(const std::vector<Applications>& steps) const;
-    Status settled(Applications step);
+    Result<std::shared_ptr<State>> replayed(std::span<const Applications> steps, Progress* progress) const;
+    Status settle();
+    Status keep(Applications step);
 
     std::shared_ptr<const rules::Grammar> grammar_;
     Options options_;

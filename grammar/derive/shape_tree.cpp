@@ -91,8 +91,13 @@ PathPart readPart(std::string_view text) {
 }
 
 ShapeId findBelow(const ShapeTree& tree, ShapeId under, const PathPart& part) {
-    for (ShapeId c = tree.shapes[under].firstChild; c != none; c = tree.shapes[c].nextSibling)
-        if (tree.labels[tree.shapes[c].label] == part.label && occurrenceOf(tree, c) == part.occurrence) return c;
+    uint32_t seen = 0;  // counted along the way: to ask each child would take its siblings squared
+    for (ShapeId c = tree.shapes[under].firstChild; c != none; c = tree.shapes[c].nextSibling) {
+        const Shape child = tree.shapes[c];
+        if (tree.labels[child.label] != part.label) continue;
+        ++seen;
+        if ((child.occurrence ? child.occurrence : seen) == part.occurrence) return c;
+    }
     uint32_t left = part.occurrence;
     for (ShapeId s = tree.next(under, under); s != none; s = tree.next(s, under))
         if (tree.labels[tree.shapes[s].label] == part.label && --left == 0) return s;

@@ -126,6 +126,29 @@ TEST(Sessions, AFailedStepChangesNothing) {
     EXPECT_TRUE(step(s, "Good").ok());
 }
 
+TEST(Sessions, ACancelledStepChangesNothing) {
+    Session s = begun(
+        "grammar 1\nstart S -> cube : A\nrule R1: A -> for k in 1..5000 { + sphere move (3 * k, 0, 0) }, + cube : B\n"
+        "rule R2: B -> + cone at +y\n");
+    Progress cancelled;
+    cancelled.cancel();
+    const std::string start = sessionTree(s);
+    EXPECT_EQ(s.apply({ruleCalled(s, "R1"), s.live()[0]}, &cancelled).error().kind, Error::Kind::Cancelled);
+    EXPECT_EQ(sessionTree(s), start);
+    ASSERT_TRUE(step(s, "R1").ok());
+    ASSERT_TRUE(s.applyRest().ok());
+    const std::string whole = sessionTree(s);
+    EXPECT_EQ(s.undo(&cancelled).error().kind, Error::Kind::Cancelled);
+    EXPECT_EQ(sessionTree(s), whole);
+    ASSERT_TRUE(s.undo().ok());
+    ASSERT_TRUE(s.undo().ok());
+    EXPECT_EQ(s.redo(&cancelled).error().kind, Error::Kind::Cancelled);
+    EXPECT_EQ(sessionTree(s), start);
+    ASSERT_TRUE(s.redo().ok());
+    EXPECT_EQ(s.derivation(&cancelled).error().kind, Error::Kind::Cancelled);
+    EXPECT_TRUE(s.derivation().ok());
+}
+
 TEST(Sessions, WaysNamePlacesAndUnnamedRulesAndRunAgain) {
     const std::string text =
         "grammar 1\nstart S -> for k in 1..3 { cube move (3 * k, 0, 0) : A }\nrule A -> + sphere at +y : B\nrule A "

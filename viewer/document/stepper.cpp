@@ -16,11 +16,11 @@ using derive::none;
 using derive::ShapeId;
 using edits::refused;
 
-Result<Stepper> Stepper::begin(std::shared_ptr<const rules::Grammar> grammar, derive::Options options) {
-    auto session = derive::Session::begin(grammar, options);
+Result<Stepper> Stepper::begin(const std::shared_ptr<const rules::Grammar>& grammar, const derive::Options& options,
+                               Progress* progress) {
+    auto session = derive::Session::begin(grammar, options, progress);
     if (!session.ok()) return session.error();
-    Stepper stepper(std::move(*session), options);
-    stepper.list();
+    Stepper stepper(grammar, std::move(*session), options);
     if (options.derive.empty()) return stepper;
     const auto way = std::find_if(grammar->derives.begin(), grammar->derives.end(),
                                   [&](const rules::Derive& d) { return d.name == options.derive; });
@@ -29,70 +29,68 @@ Result<Stepper> Stepper::begin(std::shared_ptr<const rules::Grammar> grammar, de
     for (const rules::Derive::Step& step : way->steps) {
         const auto shape = stepper.session_.meant(step.rule, step.place);
         if (!shape.ok()) return shape.error();
-        if (const Status done = stepper.apply(*shape, step.rule); !done.ok()) return done.error();
+        if (const Status done = stepper.apply(*shape, step.rule, progress); !done.ok()) return done.error();
     }
     return stepper;
 }
 
-void Stepper::list() {
-    way_.reset();
-    rows_.clear();
-    const derive::ShapeTree& tree = session_.tree();
-    const rules::Grammar& grammar = session_.grammar();
+Result<StepView> Stepper::view(Progress* progress) {
+    auto derivation = session_.derivation(progress);
+    if (!derivation.ok()) return derivation.error();
+    StepView view{grammar_,
+                  {},
+                  session_.tree(),
+                  session_.canUndo(),
+                  session_.canRedo(),
+                  std::make_shared<const derive::Derivation>(std::move(*derivation)),
+                  refused("no rule was applied yet, so there is no way to save")};
     for (const ShapeId s : session_.live()) {
-        StepRow row{s, tree.path(s), grammar.symbols[tree.shapes[s].symbol].name, tree.shapes[s].scope.size, {}};
+        StepRow row{s,
+                    view.tree.path(s),
+                    grammar_->symbols[view.tree.shapes[s].symbol].name,
+                    view.tree.shapes[s].scope.size,
+                    {}};
         for (const uint32_t r : session_.rulesFor(s))
-            row.rules.push_back({r, grammar.rules[r].name, grammar.rules[r].span});
-        rows_.push_back(std::move(row));
+            row.rules.push_back({r, grammar_->rules[r].name, grammar_->rules[r].span});
+        view.rows.push_back(std::move(row));
     }
+    if (session_.canUndo()) view.steps = session_.way(progress);
+    if (cancelled(progress)) return cancelledError();
+    return view;
 }
 
-Status Stepper::listed(Status done) {
-    list();
-    return done;
-}
-
-const StepRow* Stepper::rowOf(ShapeId shape) const {
-    const auto& shapes = session_.tree().shapes;
-    for (; shape < shapes.size(); shape = shapes[shape].parent) {
-        const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const StepRow& r) { return r.shape == shape; });
-        if (row != rows_.end()) return &*row;
+const StepRow* StepView::rowOf(ShapeId shape) const {
+    for (; shape < tree.shapes.size(); shape = tree.shapes[shape].parent) {
+        const auto row = std::find_if(rows.begin(), rows.end(), [&](const StepRow& r) { return r.shape == shape; });
+        if (row != rows.end()) return &*row;
     }
     return nullptr;
 }
 
-Status Stepper::apply(ShapeId shape, uint32_t rule, Progress* progress) {
-    return listed(session_.apply({rule, shape}, progress));
+Result<std::string> StepView::way(const std::string& name) const {
+    if (!steps.ok()) return steps.error();
+    return derive::wayText(*grammar, name, *steps);
 }
 
-Status Stepper::apply(const std::string& step) {
-    const auto& rules = session_.grammar().rules;
+Status Stepper::apply(ShapeId shape, uint32_t rule, Progress* progress) {
+    return session_.apply({rule, shape}, progress);
+}
+
+Status Stepper::apply(const std::string& step, Progress* progress) {
+    const auto& rules = grammar_->rules;
     const size_t end = std::min(step.find(" at "), step.size());
     const std::string name = step.substr(0, end), place = end == step.size() ? "" : step.substr(end + 4);
     for (uint32_t r = 0; r < rules.size(); ++r) {
         if (rules[r].name != name) continue;
         const auto shape = session_.meant(r, place);
-        return shape.ok() ? apply(*shape, r) : Status(shape.error());
+        return shape.ok() ? apply(*shape, r, progress) : Status(shape.error());
     }
     return refused(fmt::format("no rule is called '{}'", name));
 }
 
-Status Stepper::applyRest(Progress* progress) { return listed(session_.applyRest(progress)); }
-Status Stepper::undo() { return listed(session_.undo()); }
-Status Stepper::redo() { return listed(session_.redo()); }
-
-Result<std::shared_ptr<const derive::Derivation>> Stepper::derivation() const {
-    auto made = session_.derivation();
-    if (!made.ok()) return made.error();
-    return std::make_shared<const derive::Derivation>(std::move(*made));
-}
-
-Result<std::string> Stepper::way(const std::string& name) const {
-    if (!session_.canUndo()) return refused("no rule was applied yet, so there is no way to save");
-    if (!way_) way_ = session_.way();
-    if (!way_->ok()) return way_->error();
-    return derive::wayText(session_.grammar(), name, **way_);
-}
+Status Stepper::applyRest(Progress* progress) { return session_.applyRest(progress); }
+Status Stepper::undo(Progress* progress) { return session_.undo(progress); }
+Status Stepper::redo(Progress* progress) { return session_.redo(progress); }
 
 Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options,
                         const std::string& name, const rules::Loader& loader) {
@@ -114,25 +112,27 @@ Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& gr
 }
 
 edits::Edit Stepper::save(const syntax::Ast& ast, const std::string& name, const rules::Loader& loader) const {
-    if (ast.source->text() != session_.grammar().sources[0]->text())
+    if (ast.source->text() != grammar_->sources[0]->text())
         return refused("the text has changed since this way was begun");
-    const auto saved = withWay(session_, session_.grammar(), options_, name, loader);
+    const auto saved = withWay(session_, *grammar_, options_, name, loader);
     if (!saved.ok()) return saved.error();
     return difference(ast.source->text(), saved->text);
 }
 
-Result<size_t> Stepper::follow(std::shared_ptr<const rules::Grammar> grammar, derive::Options options) {
+Result<size_t> Stepper::follow(const std::shared_ptr<const rules::Grammar>& grammar, derive::Options options,
+                               Progress* progress) {
     const auto steps = session_.way();
     if (!steps.ok()) return steps.error();
     options.derive.clear();
-    auto begun = begin(grammar, options);
+    auto begun = begin(grammar, options, progress);
     if (!begun.ok()) return begun.error();
     size_t kept = 0;
     for (const rules::Derive::Step& step : *steps) {
-        const std::string& name = session_.grammar().rules[step.rule].name;
-        if (!begun->apply(step.place.empty() ? name : name + " at " + step.place).ok()) break;
+        const std::string& name = grammar_->rules[step.rule].name;
+        if (!begun->apply(step.place.empty() ? name : name + " at " + step.place, progress).ok()) break;
         ++kept;
     }
+    if (cancelled(progress)) return cancelledError();
     *this = std::move(*begun);
     return kept;
 }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,51 +27,56 @@ struct StepRow {
     std::vector<StepRule> rules;  ///< none: nothing matches any more
 };
 
+/// A derivation by hand after a step, as the panel shows it. Immutable; spans point into sources of `grammar`.
+struct StepView {
+    std::shared_ptr<const rules::Grammar> grammar;
+    std::vector<StepRow> rows;  ///< live shapes in tree order
+    derive::ShapeTree tree;
+    bool canUndo = false, canRedo = false;
+    std::shared_ptr<const derive::Derivation> derivation;  ///< so far, for ShowRequest::byHand
+    /// What led to it; Error::Input where no `derive` line can say it, or nothing was done.
+    Result<std::vector<rules::Derive::Step>> steps;
+
+    /// The row of a live shape, or null. For a shape that was picked in the view: the nearest live one at or above it.
+    const StepRow* rowOf(derive::ShapeId shape) const;
+    /// The steps as a line, "derive NAME: R0 => R2".
+    Result<std::string> way(const std::string& name) const;
+};
+
 class Stepper {
 public:
     /// Runs the start's body, then the steps of options.derive where it names a way. Errors as of derive::Session.
-    static Result<Stepper> begin(std::shared_ptr<const rules::Grammar> grammar, derive::Options options);
+    static Result<Stepper> begin(const std::shared_ptr<const rules::Grammar>& grammar, const derive::Options& options,
+                                 Progress* progress = nullptr);
 
-    /// Live shapes in tree order.
-    const std::vector<StepRow>& rows() const { return rows_; }
-    const derive::ShapeTree& tree() const { return session_.tree(); }
-    /// The row of a live shape, or null. For a shape that was picked in the view: the nearest live one at or above it.
-    const StepRow* rowOf(derive::ShapeId shape) const;
+    /// What the panel shows. Derives the steps so far anew, twice.
+    Result<StepView> view(Progress* progress = nullptr);
 
-    /// Applies a rule to a live shape; after an error everything is as before.
+    /// Applies a rule to a live shape; after an error everything is as before, as of all that follow.
     Status apply(derive::ShapeId shape, uint32_t rule, Progress* progress = nullptr);
     /// "RULE" or "RULE at PATH", as in a `derive` line.
-    Status apply(const std::string& step);
+    Status apply(const std::string& step, Progress* progress = nullptr);
     /// Goes on automatically until no rule matches; one step for undo.
     Status applyRest(Progress* progress = nullptr);
-    bool canUndo() const { return session_.canUndo(); }
-    bool canRedo() const { return session_.canRedo(); }
-    Status undo();
-    Status redo();
+    Status undo(Progress* progress = nullptr);
+    Status redo(Progress* progress = nullptr);
 
-    /// The derivation so far, for ShowRequest::byHand: made anew after every step.
-    Result<std::shared_ptr<const derive::Derivation>> derivation() const;
-    /// The way so far as a line, "derive NAME: R0 => R2"; Error::Input where a line can't say it, or nothing was done.
-    /// Derives anew the first time after a step.
-    Result<std::string> way(const std::string& name) const;
     /// The edit that writes that line into the text: in place of the way of that name, else behind the last one.
     /// Refused unless running the line gives this very tree. `ast` must be what the grammar was checked from.
     edits::Edit save(const syntax::Ast& ast, const std::string& name,
                      const rules::Loader& loader = pipeline::fileLoader()) const;
 
     /// The same way in another text of the grammar, as far as its rules still match. The number of steps kept.
-    Result<size_t> follow(std::shared_ptr<const rules::Grammar> grammar, derive::Options options);
+    Result<size_t> follow(const std::shared_ptr<const rules::Grammar>& grammar, derive::Options options,
+                          Progress* progress = nullptr);
 
 private:
-    Stepper(derive::Session session, derive::Options options)
-        : session_(std::move(session)), options_(std::move(options)) {}
-    void list();
-    Status listed(Status done);
+    Stepper(std::shared_ptr<const rules::Grammar> grammar, derive::Session session, derive::Options options)
+        : grammar_(std::move(grammar)), session_(std::move(session)), options_(std::move(options)) {}
 
+    std::shared_ptr<const rules::Grammar> grammar_;
     derive::Session session_;
     derive::Options options_;
-    std::vector<StepRow> rows_;
-    mutable std::optional<Result<std::vector<rules::Derive::Step>>> way_;  ///< of the session, once it was asked for
 };
 
 /// A grammar with a way in it.

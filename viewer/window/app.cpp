@@ -186,7 +186,7 @@ void describe(const Workbench& bench, nlohmann::json& state) {
     state["at"] = {camera.at.x, camera.at.y, camera.at.z};
     state["pane"] = static_cast<int>(bench.view.look.pane);
     state["triangles"] = bench.view.mesh.triangleCount();
-    state["stepping"] = bench.stepper.has_value();
+    state["stepping"] = bench.steps.view() != nullptr;
     state["locked"] = bench.document.choice().locked;
     state["seed"] = bench.document.choice().seed;
     const Look& look = bench.view.look;

@@ -149,10 +149,14 @@ void Bars::status(Workbench& bench) {
         return cancelled;
     };
     if (bench.busy()) {
-        const bool deriving = bench.session.busy();
-        if (progress(deriving ? bench.session.stage() : bench.uploader.stage(),
-                     deriving ? bench.session.fraction() : bench.uploader.fraction(), "progress.cancel",
-                     "Keep the model as it is; Esc while a slider is held"))
+        const bool stepping = bench.steps.running(), deriving = bench.session.busy();
+        if (progress(stepping   ? bench.steps.stage()
+                     : deriving ? bench.session.stage()
+                                : bench.uploader.stage(),
+                     stepping   ? bench.steps.fraction()
+                     : deriving ? bench.session.fraction()
+                                : bench.uploader.fraction(),
+                     "progress.cancel", "Keep the model as it is; Esc while a slider is held"))
             bench.cancel();
     }
     if (bench.exporting.running() && progress(bench.exporting.stage(), bench.exporting.fraction(), "export.cancel",

@@ -135,8 +135,8 @@ public:
 
 private:
     void begin(Workbench& bench);
-    void shapes(Workbench& bench);
-    void save(Workbench& bench);
+    void shapes(Workbench& bench, const document::StepView& view);
+    void save(Workbench& bench, const document::StepView& view);
 
     LettersView letters_;
     std::string way_ = "byhand";

@@ -12,7 +12,7 @@ namespace sgm::window {
 constexpr int fogVoxels = 96, previewCells = 64;  // along the longest side
 
 Workbench::Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> notify)
-    : report(report), session(notify), uploader(std::move(shared), notify), notify_(std::move(notify)) {}
+    : report(report), session(notify), uploader(std::move(shared), notify), steps(notify), notify_(std::move(notify)) {}
 
 Status Workbench::open(const std::filesystem::path& path) {
     Result<document::Document> opened = document::Document::open(path);
@@ -72,7 +72,7 @@ void Workbench::refresh() {
     }
     // While the user drags, the GPU's own mesh does.
     const int resolution = view.wantsMesh() && !document.dragging() ? view.look.meshResolution : 0;
-    const bool dragging = document.dragging() && !stepper;  // steps belong to a text and its spans
+    const bool dragging = document.dragging() && !steps.view();  // steps belong to a text and its spans
     const auto section = view.look.section && resolution > 0 ? std::optional(view.look.plane()) : std::nullopt;
     if (asked_.revision == document.revision() && asked_.resolution == resolution && asked_.dragging == dragging &&
         asked_.byHand == byHand_.derivation.get() && asked_.section == section)
@@ -138,6 +138,10 @@ bool Workbench::poll() {
         *written ? say("Wrote " + exporting.file().string()) : say(written->error().message, true);
         news = true;
     }
+    if (const auto outcome = steps.take()) {
+        stepped(*outcome);
+        news = true;
+    }
     asked_.settled = settled && !working();
     return news;
 }
@@ -145,6 +149,7 @@ bool Workbench::poll() {
 void Workbench::cancel() {
     session.cancel();
     uploader.cancel();
+    steps.cancel();
     uploader.deferDelete(std::exchange(asked_.prepared, nullptr));
     say("Cancelled: what is shown was made before");
 }
@@ -171,9 +176,10 @@ void Workbench::select(derive::ShapeId shape, bool quiet) {
 }
 
 void Workbench::selectLive(derive::ShapeId shape) {
-    document.select(stepper->tree().path(shape, true));
+    const derive::ShapeTree& tree = steps.view()->tree;
+    document.select(tree.path(shape, true));
     resolveSelection();
-    reveal(*this, stepper->tree().shapes[shape].span);
+    reveal(*this, tree.shapes[shape].span);
 }
 
 void Workbench::resolveSelection() {
@@ -185,33 +191,28 @@ void Workbench::beginSteps(const std::string& way) {
     if (!shown()) return;
     derive::Options options = shown()->options;
     options.derive = way;
-    Result<document::Stepper> begun = document::Stepper::begin(shown()->grammar, options);
-    if (!begun) return say(begun.error().message, true);
-    stepper.emplace(std::move(*begun));
     byHand_.steppedAt = document.revision();
-    stepped(Done{}, "Pick a live shape, then a rule");
+    steps.begin(shown()->grammar, options);
 }
 
-void Workbench::stepped(const Status& done, const std::string& what) {
-    if (!done) return say(done.error().message, true);
-    Result<std::shared_ptr<const derive::Derivation>> derivation = stepper->derivation();
-    if (!derivation) return say(derivation.error().message, true);
-    byHand_.derivation = *derivation;
-    say(what);
+void Workbench::stepped(const document::StepJob::Outcome& outcome) {
+    if (!outcome.done) return say(outcome.done.error().message, true);
+    if (outcome.edit) return edit(*outcome.edit, outcome.what);
+    byHand_.derivation = steps.view()->derivation;
+    say(outcome.what);
 }
 
 void Workbench::endSteps() {
-    stepper.reset();
+    steps.end();
     byHand_.derivation = nullptr;
 }
 
 void Workbench::followSteps() {
-    if (!stepper || byHand_.steppedAt == document.revision()) return;
+    if (!steps.view() || steps.running() || byHand_.steppedAt == document.revision()) return;
     byHand_.derivation = nullptr;  // the automatic model of the new text comes first, and brings its grammar
     if (!shown() || shown()->revision != document.revision() || shown()->byHand) return;
-    const Result<size_t> kept = stepper->follow(shown()->grammar, shown()->options);
     byHand_.steppedAt = document.revision();
-    kept ? stepped(Done{}, fmt::format("{} steps hold in the new text", *kept)) : say(kept.error().message, true);
+    steps.follow(shown()->grammar, shown()->options);
 }
 
 void Workbench::stepInside() {

@@ -14,7 +14,7 @@
 #include "viewer/document/picking.h"
 #include "viewer/document/recovery.h"
 #include "viewer/document/session.h"
-#include "viewer/document/stepper.h"
+#include "viewer/document/step_job.h"
 #include "viewer/window/field_view.h"
 #include "viewer/window/map_layer_view.h"
 #include "viewer/window/mesh_view.h"
@@ -153,8 +153,6 @@ public:
 
     // --- The derivation by hand ---
     void beginSteps(const std::string& way);
-    /// Shows the derivation after a step, or says why there was none.
-    void stepped(const Status& done, const std::string& what);
     void endSteps();
 
     // --- The view ---
@@ -177,7 +175,7 @@ public:
     Panels panels;
     Pictures pictures;
     RenderStatus status;
-    std::optional<document::Stepper> stepper;  ///< while the user derives by hand
+    document::StepJob steps;  ///< has a view while the user derives by hand
 
 private:
     /// The derivation that the user makes, shown instead of deriving.
@@ -201,9 +199,11 @@ private:
     void show(document::Document other);
     void resolveSelection();
 
-    bool working() const { return session.busy() || uploader.busy(); }
+    bool working() const { return session.busy() || uploader.busy() || steps.running(); }
     /// Leads the steps over to a new text.
     void followSteps();
+    /// Shows what a step came to.
+    void stepped(const document::StepJob::Outcome& outcome);
 
     std::function<void()> notify_;
     document::Recovery recovery_;

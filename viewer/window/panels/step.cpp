@@ -36,37 +36,35 @@ void StepPanel::begin(Workbench& bench) {
 }
 
 void StepPanel::show(Workbench& bench) {
-    if (!bench.stepper) return begin(bench);
-    document::Stepper& stepper = *bench.stepper;
-    if (button(bench.report, "step.undo", "Back", "Take the last step back", stepper.canUndo()))
-        bench.stepped(stepper.undo(), "A step back");
+    const std::shared_ptr<const document::StepView> view = bench.steps.view();
+    if (!view) return begin(bench);
+    const bool idle = !bench.steps.running();
+    if (button(bench.report, "step.undo", "Back", "Take the last step back", idle && view->canUndo)) bench.steps.undo();
     ImGui::SameLine();
-    if (button(bench.report, "step.redo", "Forward", "Do it again", stepper.canRedo()))
-        bench.stepped(stepper.redo(), "A step forward");
+    if (button(bench.report, "step.redo", "Forward", "Do it again", idle && view->canRedo)) bench.steps.redo();
     ImGui::SameLine();
-    if (button(bench.report, "step.rest", "The rest", "Go on automatically until no rule matches"))
-        bench.stepped(stepper.applyRest(), "The rest by itself");
+    if (button(bench.report, "step.rest", "The rest", "Go on automatically until no rule matches", idle))
+        bench.steps.applyRest();
     ImGui::SameLine();
     if (button(bench.report, "step.end", "End", "Back to the automatic derivation")) {
         bench.endSteps();
         return;
     }
-    shapes(bench);
-    save(bench);
+    shapes(bench, *view);
+    save(bench, *view);
 }
 
-void StepPanel::shapes(Workbench& bench) {
+void StepPanel::shapes(Workbench& bench, const document::StepView& view) {
     const float below = ImGui::GetFrameHeightWithSpacing() * 3.4f;
-    std::optional<std::pair<derive::ShapeId, uint32_t>> chosen;
-    std::string rule;
+    std::optional<std::pair<derive::ShapeId, document::StepRule>> chosen;
     if (ImGui::BeginChild("live", {0, -below})) {
         size_t waiting = 0;
-        for (const document::StepRow& row : bench.stepper->rows()) waiting += !row.rules.empty();
-        const size_t live = bench.stepper->rows().size();
+        for (const document::StepRow& row : view.rows) waiting += !row.rules.empty();
+        const size_t live = view.rows.size();
         heading(fmt::format("{} live shape{}, {} of them matched", live, live == 1 ? "" : "s", waiting).c_str());
-        const derive::ShapeId meant = document::selected(bench.stepper->tree(), bench.document.choice().selection);
-        const document::StepRow* const picked = meant == derive::none ? nullptr : bench.stepper->rowOf(meant);
-        for (const document::StepRow& row : bench.stepper->rows()) {
+        const derive::ShapeId meant = document::selected(view.tree, bench.document.choice().selection);
+        const document::StepRow* const picked = meant == derive::none ? nullptr : view.rowOf(meant);
+        for (const document::StepRow& row : view.rows) {
             ImGui::PushID(static_cast<int>(row.shape));
             const bool selected = picked == &row;
             ImGui::PushStyleColor(ImGuiCol_Text, row.rules.empty() ? tint::faint : tint::nonTerminal);
@@ -81,10 +79,8 @@ void StepPanel::shapes(Workbench& bench) {
             ImGui::Indent();
             for (const document::StepRule& r : row.rules) {
                 if (button(bench.report, fmt::format("apply.{}.{}", row.path, r.name), r.name.c_str(),
-                           std::string(r.span.text()).c_str())) {
-                    chosen = {row.shape, r.rule};
-                    rule = r.name;
-                }
+                           std::string(r.span.text()).c_str()))
+                    chosen = {row.shape, r};
                 ImGui::SameLine();
             }
             if (!row.rules.empty()) ImGui::NewLine();
@@ -93,12 +89,12 @@ void StepPanel::shapes(Workbench& bench) {
         }
     }
     ImGui::EndChild();
-    if (chosen) bench.stepped(bench.stepper->apply(chosen->first, chosen->second), "Applied " + rule);
+    if (chosen) bench.steps.apply(chosen->first, chosen->second);
 }
 
-void StepPanel::save(Workbench& bench) {
+void StepPanel::save(Workbench& bench, const document::StepView& view) {
     ImGui::Separator();
-    const Result<std::string> way = bench.stepper->way(way_);
+    const Result<std::string> way = view.way(way_);
     const std::string& whole = way ? *way : way.error().message;
     if (way) ImGui::PushFont(codeFont());
     faint(shortened(whole, ImGui::GetContentRegionAvail().x));
@@ -108,8 +104,9 @@ void StepPanel::save(Workbench& bench) {
     field(bench.report, "step.name", way_, "Name of the way",
           ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
     ImGui::SameLine();
-    if (button(bench.report, "step.save", "Save way", "Write it into the text as a `derive` line", way.ok()))
-        bench.edit(bench.stepper->save(*bench.document.ast(), way_), "Save way " + way_);
+    if (button(bench.report, "step.save", "Save way", "Write it into the text as a `derive` line",
+               way.ok() && !bench.steps.running()))
+        bench.steps.save(bench.document.ast(), way_);
 }
 
 }  // namespace sgm::window
