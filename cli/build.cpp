@@ -139,7 +139,7 @@ Status buildOne(const BuildRequest& request) {
     if (!division.ok()) return division.error();
     const auto scene = makeScene(*model, request.model, request.grid, request.edits, request.quiet, context);
     if (!scene.ok()) return scene.error();
-    auto meshed = makeMesh(*model, request.grid, context, needsPositionsOnly(request) && scene->empty());
+    auto meshed = makeMesh(*model, request.grid, context, needsPositionsOnly(request) && scene->scene.empty());
     if (!meshed.ok()) return meshed.error();
     return deliver(request, *model, std::move(*division), std::move(*meshed), *scene, context);
 }

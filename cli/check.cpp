@@ -13,6 +13,7 @@
 #include "cli/validators.h"
 #include "cli/watch.h"
 #include "grammar/operations/operations.h"
+#include "grammar/pipeline/checks.h"
 #include "grammar/pipeline/files.h"
 #include "grammar/syntax/parser.h"
 
@@ -30,12 +31,13 @@ struct CheckRequest {
 };
 
 /// Failed checks become errors at their `check` line, so that text and JSON show them like any other problem.
-int runGrammarChecks(std::shared_ptr<const rules::Grammar> grammar, const CheckRequest& request,
+int runGrammarChecks(const std::shared_ptr<const rules::Grammar>& grammar, const CheckRequest& request,
                      syntax::Diagnostics& diagnostics) {
     Watch watch(false);
-    const auto verdicts = derive::runChecks(std::move(grammar), request.seed, watch.progress(), request.seconds);
+    Context context{watch.progress(), request.grid.threads};
+    const auto verdicts = pipeline::runChecks(grammar, request.seed, context, request.seconds);
     if (!verdicts.ok()) return fail(verdicts.error());
-    for (const derive::Verdict& v : *verdicts)
+    for (const pipeline::Verdict& v : *verdicts)
         if (!v.passed) diagnostics.error(v.span, v.message);
     return 0;
 }

@@ -147,7 +147,8 @@ bool keepsObjectsApart(const BuildRequest& request) {
 }
 
 Status deliver(const BuildRequest& request, const Model& model, pipeline::Division division, MeshedModel meshed,
-               const mesh::Scene& scene, Context& context) {
+               const pipeline::MadeScene& made, Context& context) {
+    const mesh::Scene& scene = made.scene;
     Figures figures;
     if (wantsFigures(request) && (request.seeksThinParts || !request.report.empty())) {
         if (!meshed.missing) {
@@ -183,7 +184,7 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
     if (!products.ok()) return products.error();
     if (const Status s = writeFiles(request, model, *products, scene, figures, context); !s.ok()) return s;
     if (!request.report.empty()) {
-        const std::string json = reportJson(model, meshed, figures.mesh, scene, figures.support, figures.missing,
+        const std::string json = reportJson(model, meshed, figures.mesh, made, figures.support, figures.missing,
                                             figures.cave, context.stages, request.grid.threads);
         if (reportsToStdout(request))
             fmt::print("{}\n", json);

@@ -6,6 +6,7 @@
 #include "cli/requests.h"
 #include "cli/watch.h"
 #include "grammar/pipeline/products.h"
+#include "grammar/pipeline/scene.h"
 
 namespace sgm::cli {
 
@@ -46,7 +47,7 @@ Status writeMeshless(const BuildRequest& request, const Model& model, Context& c
 bool keepsObjectsApart(const BuildRequest& request);
 /// From a mesh, and the scene of objects beside it, to what was asked for.
 Status deliver(const BuildRequest& request, const Model& model, pipeline::Division division, MeshedModel meshed,
-               const mesh::Scene& scene, Context& context);
+               const pipeline::MadeScene& made, Context& context);
 /// Meshes and writes layer by layer.
 Status stream(const BuildRequest& request, const Model& model, Context& context);
 /// Prints which files were written, unless the request is quiet.

@@ -81,7 +81,7 @@ Status writeFrame(const BuildRequest& framed, pipeline::IncrementalPipeline& inc
                       ? makeMesh(model, grid, meshingOf(framed.grid, needsPositionsOnly(framed)), context)
                       : incremental.meshed(grid, context);
     if (!meshed.ok()) return meshed.error();
-    return deliver(framed, model, std::move(*division), std::move(*meshed), mesh::Scene{}, context);
+    return deliver(framed, model, std::move(*division), std::move(*meshed), {}, context);
 }
 
 }  // namespace

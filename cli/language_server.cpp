@@ -18,6 +18,7 @@
 #include "cli/trials.h"
 #include "grammar/derive/derive.h"
 #include "grammar/language/server.h"
+#include "grammar/pipeline/checks.h"
 #include "grammar/pipeline/files.h"
 
 namespace sgm::cli {
@@ -209,14 +210,15 @@ void readAll(Queue& queue) {
 }
 
 /// What `sgm check` would say of the models, and of the grammar's own tests.
-void tryGrammar(std::shared_ptr<const rules::Grammar> grammar, Progress* progress, syntax::Diagnostics& found) {
+void tryGrammar(const std::shared_ptr<const rules::Grammar>& grammar, Progress* progress, syntax::Diagnostics& found) {
     TrialOptions options;
     options.mainSeconds = 10;
     options.otherSeconds = 2;
     if (!tryModels(grammar, options, progress, found).ok() || cancelled(progress)) return;
-    const auto verdicts = derive::runChecks(std::move(grammar), options.seed, progress, options.mainSeconds);
+    pipeline::Context context{progress};
+    const auto verdicts = pipeline::runChecks(grammar, options.seed, context, options.mainSeconds);
     if (!verdicts.ok()) return;
-    for (const derive::Verdict& v : *verdicts)
+    for (const pipeline::Verdict& v : *verdicts)
         if (!v.passed) found.error(v.span, v.message);
 }
 

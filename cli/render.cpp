@@ -151,7 +151,7 @@ Result<DrawnMesh> meshAsBuilt(const RenderRequest& request, const Model& model, 
     if (!mesh.ok()) return mesh.error();
     const auto scene = makeScene(model, request.model, request.grid, request.edits, request.print.quiet, context);
     if (!scene.ok()) return scene.error();
-    auto flat = mesh::flatten(*scene, *mesh);
+    auto flat = mesh::flatten(scene->scene, *mesh);
     if (!flat.ok()) return flat.error();
     return DrawnMesh(std::move(*flat));
 }

@@ -107,8 +107,9 @@ uint64_t peakMemory_bytes() {
 }  // namespace
 
 std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures,
-                       const mesh::Scene& scene, const Support& support, const std::vector<lower::ThinPart>& missing,
-                       const std::optional<volume::Cave>& cave, const Stages& stages, int threads) {
+                       const pipeline::MadeScene& made, const Support& support,
+                       const std::vector<lower::ThinPart>& missing, const std::optional<volume::Cave>& cave,
+                       const Stages& stages, int threads) {
     const derive::Derivation& d = model.derivation;
     Json json;
     for (const auto& [name, seconds] : stages) json["stages"][name] = seconds;
@@ -118,12 +119,13 @@ std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh
     json["rules_applied"] = {{"classic", d.classic}, {"morphic", d.morphic}};
     json["field"] = fieldFigures(model, meshed);
     json["mesh"] = meshFigures(figures);
-    if (!scene.empty()) json["placed"] = placedFigures(scene);
+    if (!made.scene.empty()) json["placed"] = placedFigures(made.scene);
     json["pieces"] = support.pieces;
     json["floating"] = floatingFigures(model, support);
     json["missing"] = missingFigures(model, missing);
     for (uint32_t i = 0; i < d.grammar->reports.size(); ++i) {
-        const derive::Reported r = d.reported(i);
+        derive::Reported r = d.reported(i);
+        if (!made.reports.empty()) r.add(made.reports[i]);
         json["reports"][d.grammar->reports[i].name] = {
             {"count", r.count}, {"sum", r.sum}, {"least", r.least}, {"greatest", r.greatest}};
     }

@@ -8,16 +8,18 @@
 #include "cli/requests.h"
 #include "grammar/lower/thin_parts.h"
 #include "grammar/pipeline/floating.h"
-#include "modeler/mesh/scene.h"
+#include "grammar/pipeline/scene.h"
 #include "modeler/mesh/validate.h"
 #include "modeler/volume/cave.h"
 
 namespace sgm::cli {
 
 /// stages, shapes, terminals, bonds, rules_applied, field, mesh, placed where `place` puts objects (their number,
-/// places, triangles at all places), pieces, floating, cave where it was surveyed, peak_memory_bytes, threads, seed.
+/// places, triangles at all places), pieces, floating, missing, reports (of objects at
+/// all places too), cave where it was surveyed, peak_memory_bytes, threads, seed.
 std::string reportJson(const Model& model, const MeshedModel& meshed, const mesh::MeshFigures& figures,
-                       const mesh::Scene& scene, const Support& support, const std::vector<lower::ThinPart>& missing,
-                       const std::optional<volume::Cave>& cave, const Stages& stages, int threads);
+                       const pipeline::MadeScene& made, const Support& support,
+                       const std::vector<lower::ThinPart>& missing, const std::optional<volume::Cave>& cave,
+                       const Stages& stages, int threads);
 
 }  // namespace sgm::cli

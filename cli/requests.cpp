@@ -157,17 +157,16 @@ pipeline::SceneRequest sceneRequestOf(const ModelRequest& request, const GridReq
     return wanted;
 }
 
-Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
-                              const MeshEdits& edits, bool quiet, Context& context) {
+Result<pipeline::MadeScene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
+                                      const MeshEdits& edits, bool quiet, Context& context) {
     if (model.derivation.objects.empty() && grid.objectCell_m > 0)
         return Error{Error::Kind::Usage, "--object-cell is of objects that 'place' puts, and this model has none"};
     pipeline::SceneRequest wanted = sceneRequestOf(request, grid);
     wanted.edits = edits;
     wanted.seeksThinParts = !quiet;
     auto made = pipeline::makeScene(model, wanted, context);
-    if (!made.ok()) return made.error();
-    if (!quiet) printDiagnostics(made->warnings), printMeshWarnings(made->meshWarnings);
-    return std::move(made->scene);
+    if (made.ok() && !quiet) printDiagnostics(made->warnings), printMeshWarnings(made->meshWarnings);
+    return made;
 }
 
 void printWarnings(const Model& model) { printDiagnostics(derive::warnings(model.derivation)); }

@@ -74,8 +74,8 @@ Result<Model> makeModel(const ModelRequest& request, Context& context,
 /// How finely the objects of a model are meshed, and their budget.
 pipeline::SceneRequest sceneRequestOf(const ModelRequest& request, const GridRequest& grid);
 /// The objects of a model that was made without them. Error::Usage where `objectCell_m` is said and there are none.
-Result<mesh::Scene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
-                              const MeshEdits& edits, bool quiet, Context& context);
+Result<pipeline::MadeScene> makeScene(const Model& model, const ModelRequest& request, const GridRequest& grid,
+                                      const MeshEdits& edits, bool quiet, Context& context);
 
 /// Prints derive::warnings, what every command about a model tells.
 void printWarnings(const Model& model);

@@ -59,6 +59,9 @@ struct LettersRead {
 struct Reported {
     uint64_t count = 0;
     double sum = 0, least = 0, greatest = 0;
+
+    void add(double value) { add({1, value, value, value}); }
+    void add(const Reported& other);
 };
 
 /// What a derivation was made of, besides its grammar.
@@ -156,15 +159,5 @@ struct Options {
 /// contributes its content. Error::Budget names the rule, the path in the tree, the seed and the line; Error::Input is
 /// located too; Error::Cancelled comes within 50 ms.
 Result<Derivation> derive(std::shared_ptr<const rules::Grammar> grammar, const Options& options, Progress* progress);
-
-/// One check's verdict, for `sgm check`.
-struct Verdict {
-    bool passed = false;
-    std::string message;
-    syntax::SourceSpan span;
-};
-/// Runs every `check` of the grammar with its settings over the defaults; Error::Budget once they take longer together.
-Result<std::vector<Verdict>> runChecks(std::shared_ptr<const rules::Grammar> grammar, uint64_t seed, Progress* progress,
-                                       double seconds = 60);
 
 }  // namespace sgm::derive

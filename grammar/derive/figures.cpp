@@ -42,17 +42,21 @@ uint64_t Derivation::terminals() const {
         std::count_if(tree.shapes.begin(), tree.shapes.end(), [](const Shape& s) { return s.solid != none; }));
 }
 
+void Reported::add(const Reported& other) {
+    if (other.count == 0) return;
+    least = count == 0 ? other.least : std::min(least, other.least);
+    greatest = count == 0 ? other.greatest : std::max(greatest, other.greatest);
+    sum += other.sum;
+    count += other.count;
+}
+
 Reported Derivation::reported(uint32_t report) const {
     Reported r;
     for (ShapeId s = tree.shapes.empty() ? none : 0; s != none; s = tree.next(s)) {
         const Extras* extras = tree.extrasOf(s);
         if (!extras) continue;
         for (const auto& [index, value] : extras->reports) {
-            if (index != report) continue;
-            r.least = r.count == 0 ? value : std::min(r.least, value);
-            r.greatest = r.count == 0 ? value : std::max(r.greatest, value);
-            r.sum += value;
-            ++r.count;
+            if (index == report) r.add(value);
         }
     }
     return r;

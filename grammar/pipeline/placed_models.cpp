@@ -38,6 +38,8 @@ Part partOf(const Derivation& derivation, derive::ShapeId id) {
 
 }  // namespace
 
+bool hasSolids(const PlacedModel& object) { return object.derivation->terminals() > 0 || object.holds.empty(); }
+
 Status PlacedModels::derive() {
     std::vector<uint32_t> open = take(model_, 1, ground_);
     if (context_.progress) context_.progress->begin("objects", 0);
@@ -143,6 +145,33 @@ uint64_t PlacedModels::shapesOf(uint32_t index) {
         for (const derive::Placement& inner : derive::placementsOf(*object.derivation))
             count += shapesOf(of(object.holds, inner.object));
     return shapes_[index] = count;
+}
+
+PlacedFigures PlacedModels::figures() const {
+    PlacedFigures all{0, 0, std::vector<derive::Reported>(model_.grammar->reports.size())};
+    std::unordered_map<uint32_t, PlacedFigures> known;
+    addFigures(model_, ground_, known, all);
+    for (const auto& [index, inside] : known) all.objects += hasSolids(objects_[index]);
+    return all;
+}
+
+/// Adds what a derivation holds: `known` has of each object what stands in it, itself included.
+void PlacedModels::addFigures(const Derivation& derivation, const std::vector<uint32_t>& holds,
+                              std::unordered_map<uint32_t, PlacedFigures>& known, PlacedFigures& sum) const {
+    if (holds.empty()) return;
+    for (const derive::Placement& placement : derive::placementsOf(derivation)) {
+        const uint32_t index = of(holds, placement.object);
+        if (!known.contains(index)) {
+            const PlacedModel& object = objects_[index];
+            PlacedFigures inside{0, hasSolids(object), {}};
+            for (uint32_t i = 0; i < sum.reports.size(); ++i) inside.reports.push_back(object.derivation->reported(i));
+            addFigures(*object.derivation, object.holds, known, inside);
+            known[index] = std::move(inside);
+        }
+        const PlacedFigures& inside = known.at(index);
+        sum.places += inside.places;
+        for (size_t i = 0; i < sum.reports.size(); ++i) sum.reports[i].add(inside.reports[i]);
+    }
 }
 
 syntax::Diagnostics PlacedModels::warnings() const {

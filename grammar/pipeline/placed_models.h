@@ -47,6 +47,15 @@ struct PlacedModel {
     double foot_m = 0;            ///< its lowest point, in its own frame
 };
 
+/// Whether something solid is the object's own, not that of objects in it.
+bool hasSolids(const PlacedModel& object);
+
+/// What the objects at all places of a model come to.
+struct PlacedFigures {
+    uint64_t objects = 0, places = 0;       ///< different objects and their places, of those with solids of their own
+    std::vector<derive::Reported> reports;  ///< by index in Grammar::reports
+};
+
 /// All objects of a model, in the order in which they were found. The model has to outlive it.
 class PlacedModels {
 public:
@@ -76,6 +85,8 @@ public:
     };
     /// All places in tree order, those in objects after the one that holds them. Error::Budget for more than `most`.
     Result<std::vector<Place>> places(uint64_t most) const;
+    /// Of all places, those in objects too. For derived objects that `release` hasn't taken.
+    PlacedFigures figures() const;
     /// Shapes of the object with those of all that it holds.
     uint64_t shapesOf(uint32_t index);
     /// Which places of the text picked something in one of them.
@@ -102,6 +113,8 @@ public:
     }
 
 private:
+    void addFigures(const derive::Derivation& derivation, const std::vector<uint32_t>& holds,
+                    std::unordered_map<uint32_t, PlacedFigures>& known, PlacedFigures& sum) const;
     std::vector<uint32_t> take(const derive::Derivation& from, uint32_t depth, std::vector<uint32_t>& holds);
     Status deriveLevel(const std::vector<uint32_t>& open);
     Status deriveThese(const std::vector<uint32_t>& these);

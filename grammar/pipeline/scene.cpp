@@ -27,6 +27,8 @@ public:
 
     Status deriveAll() { return objects_.derive(); }
     syntax::Diagnostics warnings() const { return objects_.warnings(); }
+    /// To be asked before they are meshed.
+    PlacedFigures figures() const { return objects_.figures(); }
 
     /// Lowers every object.
     Status tryAll() {
@@ -120,7 +122,7 @@ private:
         isLookedAt_.assign(objects_.size(), false);
         std::set<uint32_t> starts;
         for (const uint32_t i : different())
-            if (!isEmpty(objects_[i])) isLookedAt_[i] = starts.insert(objects_[i].inputs.start).second;
+            if (hasSolids(objects_[i])) isLookedAt_[i] = starts.insert(objects_[i].inputs.start).second;
     }
 
     static std::vector<MeshWarning> lacksOf(const std::vector<Made>& made) {
@@ -129,14 +131,10 @@ private:
         return all;
     }
 
-    static bool isEmpty(const PlacedModel& object) {
-        return object.derivation->terminals() == 0 && !object.holds.empty();
-    }
-
     /// Lowers an object, and meshes it where `out` isn't null; then its derivation goes, unless it holds objects.
     Status make(uint32_t index, Made* out, Context& own) {
         const PlacedModel& object = objects_[index];
-        if (isEmpty(object)) return Done{};
+        if (!hasSolids(object)) return Done{};
         const bool isLookedAt = !isLookedAt_.empty() && isLookedAt_[index];
         Derivation derivation = object.holds.empty() ? objects_.release(index) : Derivation(*object.derivation);
         if (!out) {
@@ -196,6 +194,7 @@ Result<MadeScene> makeScene(const Model& model, const SceneRequest& request, Con
     const Status done = context.timed("objects", [&]() -> Status {
         SceneBuilder builder(model.derivation, request, context);
         if (const Status s = builder.deriveAll(); !s.ok()) return s;
+        made.reports = builder.figures().reports;
         if (const Status s = builder.makeAll(made); !s.ok()) return s;
         if (const Status s = builder.placeAll(made.scene); !s.ok()) return s;
         made.warnings = builder.warnings();

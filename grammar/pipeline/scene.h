@@ -25,7 +25,9 @@ struct SceneRequest {
 /// A scene, and what is to be said of its objects.
 struct MadeScene {
     mesh::Scene scene;
-    syntax::Diagnostics warnings;           ///< those of derive::warnings, each once
+    syntax::Diagnostics warnings;  ///< those of derive::warnings, each once
+    std::vector<derive::Reported>
+        reports;  ///< of objects at all places, by index in Grammar::reports; empty: no object
     std::vector<MeshWarning> meshWarnings;  ///< what the cells of objects lack, where that is sought
 };
 

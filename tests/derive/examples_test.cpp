@@ -1,4 +1,5 @@
 // The examples that ship derive within their budget and keep their promises.
+#include "grammar/pipeline/checks.h"
 #include "tests/derive/grammars.h"
 
 namespace sgm {
@@ -24,7 +25,8 @@ TEST(Examples, TheirOwnChecksPass) {
     for (const char* name : {"grotto.sgm", "cumulus.sgm", "tower.sgm", "joints.sgm", "figure1.sgm"}) {
         const auto grammar = grammarOf(fileText(std::string("examples/") + name));
         ASSERT_TRUE(grammar) << name;
-        const auto verdicts = derive::runChecks(grammar, 1, nullptr);
+        pipeline::Context context;
+        const auto verdicts = pipeline::runChecks(grammar, 1, context);
         ASSERT_TRUE(verdicts.ok());
         for (const auto& v : *verdicts) EXPECT_TRUE(v.passed) << name << ": " << v.message;
     }

@@ -1,4 +1,5 @@
 // Joints and bonds, SG-M eqs. 15–16.
+#include "grammar/pipeline/checks.h"
 #include "modeler/core/random.h"
 #include "tests/cpu_time.h"
 #include "tests/derive/grammars.h"
@@ -122,8 +123,9 @@ TEST(Figures, OverlapsAndFloating) {
 }
 
 TEST(Figures, ChecksRun) {
-    const auto verdicts =
-        derive::runChecks(grammarOf(std::string(house) + "check House { floors = 2 } expect bonds == 7\n"), 1, nullptr);
+    pipeline::Context context;
+    const auto verdicts = pipeline::runChecks(
+        grammarOf(std::string(house) + "check House { floors = 2 } expect bonds == 7\n"), 1, context);
     ASSERT_TRUE(verdicts.ok());
     ASSERT_EQ(verdicts->size(), 2u);
     EXPECT_TRUE((*verdicts)[0].passed) << (*verdicts)[0].message;

@@ -1,6 +1,7 @@
 // Nothing floats: groups of touching boxes, and the rule that made the one in the air.
 #include "grammar/derive/support.h"
 
+#include "grammar/pipeline/checks.h"
 #include "tests/derive/grammars.h"
 
 namespace sgm {
@@ -23,7 +24,8 @@ TEST(Support, AFloatingStoreyIsNamedWithItsRuleAndLine) {
     const auto shapes = d.floatingShapes();
     ASSERT_EQ(shapes.size(), 1u);
     EXPECT_EQ(derive::madeBy(d, shapes[0]), "'House/Storey/Storey[3]', made by rule 'Build' (test.sgm:5)");
-    const auto verdicts = derive::runChecks(grammarOf(raised), 1, nullptr);
+    pipeline::Context context;
+    const auto verdicts = pipeline::runChecks(grammarOf(raised), 1, context);
     ASSERT_TRUE(verdicts.ok());
     EXPECT_FALSE((*verdicts)[0].passed);
     EXPECT_NE((*verdicts)[0].message.find("made by rule 'Build' (test.sgm:5)"), std::string::npos)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "grammar/pipeline/checks.h"
 #include "tests/lower/lowered.h"
 #include "tests/operations/shapes_called.h"
 
@@ -155,7 +156,8 @@ TEST(Reports, AreSummedAndAskedByChecks) {
     EXPECT_EQ(d.reported(0).count, 3u);
     EXPECT_NEAR(d.reported(0).sum, 240, 1e-9);
     EXPECT_NEAR(d.reported(0).greatest, 80, 1e-9);
-    const auto verdicts = derive::runChecks(grammarOf(text), 1, nullptr);
+    pipeline::Context context;
+    const auto verdicts = pipeline::runChecks(grammarOf(text), 1, context);
     ASSERT_TRUE(verdicts.ok());
     EXPECT_TRUE((*verdicts)[0].passed) << (*verdicts)[0].message;
     EXPECT_FALSE((*verdicts)[1].passed);
