@@ -145,7 +145,9 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
         content.terms = {part};
     else {
         const field::NodeRef t = model_.graph.slot({s.key, hashText("by")}, static_cast<float>(s.amount));
-        content.terms = {{field::morph(stands.field, part.field, t, s.amount, ownerOf(id)), ownerOf(id)}};
+        const OriginId owner = ownerOf(id);
+        model_.provenance.parts[owner].material = materials_.ofMorph(id);
+        content.terms = {{field::morph(stands.field, part.field, t, s.amount, owner), owner}};
     }
 }
 

@@ -28,6 +28,15 @@ public:
             first_[a] = own_[id];
     }
     uint32_t of(derive::ShapeId id) const { return own_[id]; }
+    /// Of what stands, morphed with a newcomer that has been entered whole: the newcomer's own look where it
+    /// has one, else that of the first solid that stands, else that of the newcomer's first.
+    uint32_t ofMorph(derive::ShapeId id) const {
+        const derive::Shape& s = tree_.shapes[id];
+        const uint32_t stands = s.parent == derive::none ? derive::none : first_[s.parent];
+        for (const uint32_t material : {s.material, stands, first_[id], own_[id]})
+            if (material != derive::none && material != 0) return material;
+        return 0;
+    }
 
 private:
     const derive::ShapeTree& tree_;

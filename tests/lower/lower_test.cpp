@@ -144,6 +144,19 @@ TEST(Owners, AMorphLooksLikeTheFirstOfItsSolidsThatHasALook) {
     EXPECT_NE(material({0, 1, 0}), "wall");
 }
 
+TEST(Owners, WhatIsMorphedWithANewcomerLooksLikeTheFirstThatHasALook) {
+    const std::string looks = "grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\n";
+    const auto look = [&](const std::string& text) {
+        const Lowered d(looks + "start S -> " + text + "\nrule W -> wall\nrule G -> glass\nrule C -> cube\n");
+        return d.model->provenance.materials[d.owner({0, .5f, 0}).material].name;
+    };
+    EXPECT_EQ(look("W morph G by .5"), "wall");
+    EXPECT_EQ(look("C morph G by .5"), "glass");
+    EXPECT_EQ(look("W morph C by .5"), "wall");
+    EXPECT_EQ(look("wall morph sphere by .5"), "wall");
+    EXPECT_EQ(look("W morph glass by .5"), "glass") << "its own";
+}
+
 TEST(Slots, AChangedNumberKeepsTheStructure) {
     const std::string text =
         "grammar 1\nparam r = 1 in .5..2\nstart S -> cube : A\nrule A repeat 5 -> + morph(sphere, cube, r / 2) size r "
