@@ -66,7 +66,7 @@ public:
           half_m_(air.voxel_m / 2),
           radius_m_(static_cast<float>(cave.agent.radius_m)),
           height_m_(static_cast<float>(cave.agent.height_m)),
-          step_m_(std::max(static_cast<float>(cave.agent.step_m()),
+          step_m_(std::max(static_cast<float>(cave.agent.step_m()) + half_m_,
                            air.voxel_m * static_cast<float>(std::tan(cave.agent.slope_rad)))) {}
 
     void run() {
@@ -80,7 +80,7 @@ private:
     void findSpans();
     bool holdsBall(const Span& span) const;
     void measureFloors();
-    uint32_t standing(const Span& span) const;
+    bool canStand(const Span& span) const;
     void linkNodes();
     uint32_t beside(const Span& span, size_t side, float most_m) const;
     float rise(const Span& span, size_t pair) const;
@@ -103,7 +103,6 @@ private:
     std::vector<uint32_t> spanOf_;  ///< by voxel
     std::vector<uint32_t> nodes_;   ///< spans on which the agent can stand
     std::vector<uint32_t> nodeOf_;  ///< by span: its node, or nowhere
-    std::vector<uint32_t> stand_;   ///< by node: the voxel at the centre of the agent's lower ball
     std::vector<std::array<uint32_t, 4>> link_;
 };
 
@@ -162,32 +161,31 @@ void Walk::measureFloors() {
     cave_.headroom = {headrooms.front(), headrooms[headrooms.size() / 2], headrooms.back()};
 }
 
-/// The voxel of the span where the agent's lower ball rests when it stands there clear of rock, or nowhere.
-uint32_t Walk::standing(const Span& span) const {
-    if (!gentle(span) || spaceOf_[span.first] == nowhere) return nowhere;
+/// Whether the agent can stand on the span: from where its ball rests, or up to a step higher, to its height the ball
+/// is clear of rock. What rises no higher than a step beside it is stepped upon, so that stairs are one walk.
+bool Walk::canStand(const Span& span) const {
+    if (!gentle(span) || spaceOf_[span.first] == nowhere) return false;
     const float least = radius_m_ - half_m_;
-    const float reach = radius_m_ / span.cosine + 2 * half_m_;  // a ball on a slope stands higher
+    const float resting = radius_m_ / span.cosine + 2 * half_m_;  // a ball on a slope stands higher
+    const float reach = std::max(resting, radius_m_ + static_cast<float>(cave_.agent.step_m()));
     uint32_t v = span.first;
     const uint32_t end = span.first + span.count;
     const auto above = [&](uint32_t i) { return air_.place(i).y - span.floor_m; };
     while (v < end && above(v) < radius_m_ - half_m_) ++v;
     while (v < end && air_.clearance_m[v] < least && above(v) <= reach) ++v;
-    if (v == end || air_.clearance_m[v] < least) return nowhere;
+    if (v == end || air_.clearance_m[v] < least) return false;
     const float top = height_m_ - radius_m_ - half_m_;
     uint32_t u = v;
     while (u < end && above(u) < top && air_.clearance_m[u] >= least) ++u;
-    if (u == end) return span.hasRoof && above(u - 1) < top ? nowhere : v;
-    return above(u) < top ? nowhere : v;
+    return u == end ? !span.hasRoof || above(u - 1) >= top : above(u) >= top;
 }
 
 void Walk::linkNodes() {
     nodeOf_.assign(spans_.size(), nowhere);
     for (uint32_t s = 0; s < spans_.size(); ++s) {
-        const uint32_t v = standing(spans_[s]);
-        if (v == nowhere) continue;
+        if (!canStand(spans_[s])) continue;
         nodeOf_[s] = static_cast<uint32_t>(nodes_.size());
         nodes_.push_back(s);
-        stand_.push_back(v);
     }
     link_.resize(nodes_.size());
     for (uint32_t n = 0; n < nodes_.size(); ++n)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "modeler/field/combine.h"
 #include "modeler/mesh/polygonize.h"
@@ -207,6 +208,18 @@ TEST(CaveReport, SlopesAreSortedByTheirAngle) {
     EXPECT_GT(cave.walkable_m2, 20);
 }
 
+TEST(CaveReport, StepsAreClimbedAtAnyResolution) {
+    const auto parts = [](float step_m, float cell_m) {
+        const float half = (3 - step_m) / 2;
+        return Dig({{{-2, 0, 0}, {2.01f, 1.5f, 2}}, {{2, 1.5f - half, 0}, {2, half, 2}}}, cell_m, {}, false, {5, 2, 3})
+            .cave.walkParts;
+    };
+    for (const float cell_m : {0.2f, 0.11f, 0.06f})
+        for (const float step_m : {0.1f, 0.25f, 0.4f})
+            EXPECT_EQ(parts(step_m, cell_m), 1u) << "a step of " << step_m << " m in cells of " << cell_m;
+    for (const float cell_m : {0.11f, 0.06f}) EXPECT_EQ(parts(0.6f, cell_m), 2u) << "too high, in cells of " << cell_m;
+}
+
 TEST(CaveReport, TheFloorMeshIsTheWalkableFloor) {
     const Dig dig(threeRooms, 0.12f, {.radius_m = 0.5, .height_m = 1.8});
     const mesh::Mesh floor = walkableFloor(dig.mesh, dig.cave);
@@ -225,6 +238,39 @@ TEST(CaveReport, TheFloorMeshIsTheWalkableFloor) {
         }
     EXPECT_NEAR(area, dig.cave.walkable_m2, 0.1 * area);
     for (const Vec3f& p : points) EXPECT_NEAR(p.y, -1.5f, 0.01f);
+}
+
+/// Area in m², of a bare mesh in one chunk; each edge between two triangles is run through once a way.
+double areaOfSheet(const mesh::Chunk& c) {
+    double area = 0;
+    std::set<std::pair<uint32_t, uint32_t>> edges;
+    for (const mesh::Triangle& t : c.triangles) {
+        area += static_cast<double>(
+                    length(cross(c.positions[t.y] - c.positions[t.x], c.positions[t.z] - c.positions[t.x]))) /
+                2;
+        for (int k = 0; k < 3; ++k) EXPECT_TRUE(edges.emplace(t[k], t[(k + 1) % 3]).second);
+    }
+    return area;
+}
+
+TEST(CaveReport, LargeTrianglesOfTheFloorAreCutToWhatIsWalkable) {
+    const Dig dig(threeRooms, 0.12f, {.radius_m = 0.5, .height_m = 1.8});
+    mesh::Chunk quad;
+    for (const Vec3f p : {Vec3f{-12, -1.5f, -6}, {12, -1.5f, -6}, {12, -1.5f, 6}, {-12, -1.5f, 6}})
+        quad.positions.push_back(p);
+    quad.triangles.push_back({0, 2, 1});
+    quad.triangles.push_back({0, 3, 2});
+    mesh::Mesh whole;
+    whole.chunks.push_back(std::move(quad));
+    const mesh::Mesh floor = walkableFloor(whole, dig.cave);
+    ASSERT_EQ(floor.chunks.size(), 1u);
+    EXPECT_NEAR(areaOfSheet(floor.chunks[0]), dig.cave.walkable_m2, 0.03 * dig.cave.walkable_m2);
+    EXPECT_LT(floor.triangleCount(), 4000u);
+    for (const mesh::Triangle& t : floor.chunks[0].triangles)
+        EXPECT_GT(cross(floor.chunks[0].positions[t.y] - floor.chunks[0].positions[t.x],
+                        floor.chunks[0].positions[t.z] - floor.chunks[0].positions[t.x])
+                      .y,
+                  0);
 }
 
 TEST(CaveReport, AnAgentThatCantBeIsRefused) {
