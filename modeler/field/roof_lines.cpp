@@ -79,6 +79,22 @@ private:
         }
     }
 
+    double heightAt(Vec2 p) const { return -plan::valueOf(roof_.formula, roof_.slopes, p); }
+
+    /// Whether the roof bends along a stretch: up on both sides 1, down -1, or not 0. Most of three places decide, for
+    /// another line may cross at one of them.
+    int bendOf(const Line& line, double low, double high) const {
+        const Vec2 aside = Vec2{line.way.z, -line.way.x} * std::min(1e-3, (high - low) / 8);
+        int up = 0, down = 0;
+        for (const double share : {0.31, 0.5, 0.69}) {
+            const Vec2 at = line.at(low + (high - low) * share);
+            const double bend = heightAt(at + aside) + heightAt(at - aside) - 2 * heightAt(at);
+            up += bend > 1e-9;
+            down += bend < -1e-9;
+        }
+        return up >= 2 ? 1 : down >= 2 ? -1 : 0;
+    }
+
     void add(const Line& line, double low, double high, uint32_t i, uint32_t k) {
         const Linear& own = roof_.slopes[i];
         RoofLine found;
@@ -88,13 +104,12 @@ private:
         found.along = line.way * (rise < 0 ? -1.0 : 1.0);
         found.rise_m = std::abs(rise);
         found.run_m = high - low;
-        const auto heightAt = [&](Vec2 p) { return -plan::valueOf(roof_.formula, roof_.slopes, p); };
-        const Vec2 aside = Vec2{line.way.z, -line.way.x} * std::min(1e-3, (high - low) / 8);
-        const double bend = heightAt(found.at + aside) + heightAt(found.at - aside) - 2 * heightAt(found.at);
-        if (std::abs(bend) < 1e-9) return;  // another pair's line crosses there
+        const int bend = bendOf(line, low, high);
+        if (bend == 0) return;  // the roof goes on smoothly: another pair's line at most crosses there
         const bool isLevel = found.rise_m < 1e-6 * found.run_m;
         const bool known = std::any_of(found_.begin(), found_.end(), [&](const RoofLine& other) {
-            return length(other.at - found.at) < leastLine_m && std::abs(other.run_m - found.run_m) < leastLine_m;
+            return length(other.at - found.at) < leastLine_m && std::abs(other.run_m - found.run_m) < leastLine_m &&
+                   std::abs(cross(other.along, found.along)) < 1e-6;
         });
         if (known) return;  // two edges in one line share a plane
         found.kind = bend > 0 ? RoofLine::Kind::Valley : isLevel ? RoofLine::Kind::Ridge : RoofLine::Kind::Hip;

@@ -112,6 +112,11 @@ TEST(EachFace, RidgesHipsAndValleysAreWhereSlopesMeet) {
     EXPECT_EQ(lines("tee(16, 12, 5, 6)", "gableRoof(40deg)", "valley").size(), 2u);
     EXPECT_EQ(lines("ring(30, 24, 7)", "hipRoof(40deg)", "valley").size(), 4u);
     EXPECT_TRUE(lines("rect(12, 8)", "domeRoof", "ridge").empty());
+    const std::string wings =  // four of one width, whose ridges cross at their middles
+        "outline((-10, -3), (-3, -3), (-3, -10), (3, -10), (3, -3), (10, -3), (10, 3), (3, 3), (3, 10), (-3, 10), "
+        "(-3, 3), (-10, 3))";
+    expect(lines(wings, "gableRoof(45deg)", "ridge"), {20, 20});
+    expect(lines(wings, "hipRoof(45deg)", "ridge"), {14, 14});
 }
 
 TEST(EachFace, LinesOfRoofsLieOnTheRoof) {
