@@ -30,16 +30,48 @@ std::array<Vec3f, 3> placesOf(const TipSurface& surface, const TipFan& fan, cons
     return places;
 }
 
+/// Whether triangles of a fan cross one another or those among `near`, triangles of the mesh, that stay.
+bool crosses(const TipSurface& surface, const TipFan& fan, std::span<const uint32_t> near) {
+    std::vector<Vec3f> positions;
+    std::unordered_map<uint32_t, uint32_t> numbers;
+    std::vector<Triangle> triangles;
+    const auto add = [&](const TipTriangle& t) {
+        const std::array<Vec3f, 3> places = placesOf(surface, fan, t);
+        Triangle own;
+        for (int k = 0; k < 3; ++k) {
+            const auto [known, isNew] = numbers.emplace(t.corners[k], static_cast<uint32_t>(positions.size()));
+            if (isNew) positions.push_back(places[static_cast<size_t>(k)]);
+            own[k] = known->second;
+        }
+        triangles.push_back(own);
+    };
+    for (const TipTriangle& t : fan.triangles) add(t);
+    for (const uint32_t t : near)
+        if (!std::binary_search(fan.removed.begin(), fan.removed.end(), t)) add(surface.triangles[t]);
+    for (size_t i = 0; i < fan.triangles.size(); ++i)
+        for (size_t j = i + 1; j < triangles.size(); ++j)
+            if (!intersection(boxOf(positions, triangles[i]), boxOf(positions, triangles[j])).empty() &&
+                meetWrongly(positions, triangles[i], triangles[j]))
+                return true;
+    return false;
+}
+
+/// Along which depth below an apex is measured: the way from the middle of what is cut off, or the mean of its normals,
+/// beyond which nothing of a flat convex tip lies whatever cells it has vertices in.
+enum class Axis { Way, Normals };
+
 class FanBuilder {
 public:
-    FanBuilder(const TipSurface& surface, uint32_t vertex, Vec3d apex)
-        : surface_(surface), vertex_(vertex), guess_(apex) {}
+    FanBuilder(const TipSurface& surface, uint32_t vertex, Vec3d apex, Axis axis)
+        : surface_(surface), vertex_(vertex), guess_(apex), axisKind_(axis) {}
 
-    /// What is cut off at so many times the depth of the highest vertex; see `fanAt`. Unless `takesConfined`, nothing
-    /// where the border goes through a confined vertex.
+    /// What is cut off at so many times the depth of the highest vertex; see `fanAt`. Nothing where the field on the
+    /// fan isn't near 0, and unless `takesConfined`, where the border goes through a confined vertex.
     std::optional<TipFan> fan(double cut, bool takesConfined) {
         top_ = vertex_, apex_ = guess_;
-        axis_ = normalized(apex_ - at(top_));
+        cutOff_ = {top_};
+        triangles_.assign(around(top_).begin(), around(top_).end());
+        axis_ = axisOf();
         double within_m = apexSlack * surface_.cell_m;
         for (int round = 0; round < rounds; ++round) {
             if (isTooNear()) return {};
@@ -47,14 +79,14 @@ public:
             const auto meeting = meetingOf(within_m);
             if (!meeting || meeting->error > within_m) return {};
             apex_ = meeting->point;
-            axis_ = normalized(apex_ - middle());
+            axis_ = axisOf();
             within_m = std::clamp(meeting->error, apexRounding * surface_.cell_m, onSurface * surface_.cell_m);
         }
         if (!isApex()) return {};
-        TipFan made{top_, apex_.as<float>(), {}, {}};
-        if (!fillFrom(made, takesConfined) || !isOneLoop(made) || !liesOnSurface(made) ||
-            crosses(surface_, made, beside(made)))
-            return {};
+        TipFan made{top_, apex_.as<float>(), {}, {}, 0};
+        if (!fillFrom(made, takesConfined) || !isOneLoop(made)) return {};
+        made.error_m = errorOf(made);
+        if (!(made.error_m < nearSurface * surface_.cell_m) || crosses(surface_, made, beside(made))) return {};
         return made;
     }
 
@@ -109,11 +141,13 @@ private:
         }
     }
 
-    Vec3d middle() const {
-        Vec3d sum{};
+    /// The direction along which depth is measured, from what is cut off to the apex.
+    Vec3d axisOf() const {
+        Vec3d middle{}, normal{};
         double count = 0;
-        visitCorners([&](uint32_t v, Vec3f) { sum += at(v), ++count; });
-        return sum * (1 / count);
+        visitCorners([&](uint32_t v, Vec3f n) { middle += at(v), normal += n.as<double>(), ++count; });
+        const Vec3d way = apex_ - middle * (1 / count);
+        return normalized(axisKind_ == Axis::Way ? way : dot(normal, way) < 0 ? normal * -1.0 : normal);
     }
 
     /// Where the planes of what is cut off meet; those farther than twice `within_m` from the apex don't count, half of
@@ -193,21 +227,26 @@ private:
         return found;
     }
 
-    bool liesOnSurface(const TipFan& made) const {
+    double errorOf(const TipFan& made) const {
         std::vector<Vec3f> points;
         for (const TipTriangle& t : made.triangles) {
             const std::array<Vec3f, 3> p = placesOf(surface_, made, t);
             points.push_back((p[0] + p[1] + p[2]) * (1.0f / 3));
-            for (size_t k = 0; k < 3; ++k) points.push_back((p[k] + p[(k + 1) % 3]) * 0.5f);
+            for (size_t k = 0; k < 3; ++k) {
+                points.push_back((p[k] + p[(k + 1) % 3]) * 0.5f);
+                if (!surface_.isConfined[t.corners[static_cast<int>(k)]]) points.push_back(p[k]);
+            }
         }
         const std::vector<float> values = valuesAt(surface_, points);
-        return std::all_of(values.begin(), values.end(),
-                           [&](float f) { return std::abs(f) < nearSurface * surface_.cell_m; });
+        double most = 0;
+        for (const float f : values) most = std::max(most, static_cast<double>(std::abs(f)));
+        return most;
     }
 
     const TipSurface& surface_;
     const uint32_t vertex_;
     const Vec3d guess_;
+    const Axis axisKind_;
     uint32_t top_ = 0;
     Vec3d apex_, axis_;
     std::unordered_set<uint32_t> cutOff_;  ///< vertices
@@ -234,36 +273,46 @@ std::vector<float> valuesAt(const TipSurface& surface, std::span<const Vec3f> po
 }
 
 std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d apex) {
-    FanBuilder builder(surface, vertex, apex);
-    for (const bool takesConfined : {false, true})
-        for (const double cut : cuts)
-            if (auto fan = builder.fan(cut, takesConfined)) return fan;
-    return {};
+    std::optional<TipFan> first;
+    for (const Axis axis : {Axis::Way, Axis::Normals}) {
+        if (axis == Axis::Normals && !surface.isConfined[vertex]) break;  // cells hold steeper tips on one side
+        FanBuilder builder(surface, vertex, apex, axis);
+        for (const bool takesConfined : {false, true})
+            for (const double cut : cuts) {
+                auto fan = builder.fan(cut, takesConfined);
+                if (!fan) continue;
+                if (fan->error_m < onSurface * surface.cell_m) return fan;
+                if (!first) first = std::move(fan);
+            }
+    }
+    return first;
 }
 
-bool crosses(const TipSurface& surface, const TipFan& fan, std::span<const uint32_t> near) {
-    std::vector<Vec3f> positions;
-    std::unordered_map<uint32_t, uint32_t> numbers;
-    std::vector<Triangle> triangles;
-    const auto add = [&](const TipTriangle& t) {
-        const std::array<Vec3f, 3> places = placesOf(surface, fan, t);
-        Triangle own;
-        for (int k = 0; k < 3; ++k) {
-            const auto [known, isNew] = numbers.emplace(t.corners[k], static_cast<uint32_t>(positions.size()));
-            if (isNew) positions.push_back(places[static_cast<size_t>(k)]);
-            own[k] = known->second;
-        }
-        triangles.push_back(own);
-    };
-    for (const TipTriangle& t : fan.triangles) add(t);
-    for (const uint32_t t : near)
-        if (!std::binary_search(fan.removed.begin(), fan.removed.end(), t)) add(surface.triangles[t]);
-    for (size_t i = 0; i < fan.triangles.size(); ++i)
-        for (size_t j = i + 1; j < triangles.size(); ++j)
-            if (!intersection(boxOf(positions, triangles[i]), boxOf(positions, triangles[j])).empty() &&
-                meetWrongly(positions, triangles[i], triangles[j]))
-                return true;
-    return false;
+void dropCrossing(const TipSurface& surface, std::vector<TipFan>& fans, const Progress* progress) {
+    std::vector<Box3f> boxes;
+    for (const TipFan& fan : fans) {
+        Box3f box{fan.apex, fan.apex};
+        for (const TipTriangle& t : fan.triangles)
+            for (int k = 0; k < 3; ++k)
+                if (t.corners[k] != fan.top) box = hull(box, surface.positions[t.corners[k]]);
+        boxes.push_back(box);
+    }
+    const BoxFinder finder(boxes);
+    std::vector<std::vector<uint32_t>> near(fans.size());
+    std::vector<uint32_t> found;
+    for (uint32_t t = 0; t < surface.triangles.size(); ++t) {
+        finder.find(boxOf(surface.positions, surface.triangles[t].corners), found);
+        for (const uint32_t i : found) near[i].push_back(t);
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < fans.size() && !cancelled(progress); ++i) {
+        const auto meets = [&](const Box3f& box) { return !intersection(box, boxes[i]).empty(); };
+        const auto end = boxes.begin() + static_cast<ptrdiff_t>(kept);
+        if (std::any_of(boxes.begin(), end, meets) || crosses(surface, fans[i], near[i])) continue;
+        boxes[kept] = boxes[i];
+        std::swap(fans[kept++], fans[i]);
+    }
+    fans.resize(kept);
 }
 
 }  // namespace sgm::mesh

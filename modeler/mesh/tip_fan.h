@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "modeler/core/progress.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/mesh/mesh.h"
 
@@ -65,19 +66,21 @@ struct TipFan {
     Vec3f apex;                     ///< metres
     std::vector<uint32_t> removed;  ///< triangles, as TipSurface::triangles counts them, ascending
     std::vector<TipTriangle>
-        triangles;  ///< as the removed ones on the same pieces beside the border, whose `number` they have
+        triangles;       ///< as the removed ones on the same pieces beside the border, whose `number` they have
+    double error_m = 0;  ///< the field on these triangles, at most
 };
 
 /// The field at points.
 std::vector<float> valuesAt(const TipSurface& surface, std::span<const Vec3f> points);
 
-/// Cuts off the surface around `vertex` below `apex`, as near to the apex as triangles lie on the surface, and fans the
-/// border to the apex, which the planes of what was cut off tell exactly. Nothing where they don't agree or the field
-/// says otherwise, and where what is cut off isn't one disk. O(n) in the triangles that are cut off.
+/// Cuts off the surface around `vertex` below `apex`, as near to the apex as triangles lie on the surface, else as they
+/// come near it, and fans the border to the apex, which the planes of what was cut off tell exactly. Nothing where they
+/// don't agree or the field says otherwise, and where what is cut off isn't one disk. O(n) in the triangles that are
+/// cut off.
 std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d apex);
 
-/// Whether triangles of a fan cross one another or those among `near`, triangles of the mesh, that stay.
-bool crosses(const TipSurface& surface, const TipFan& fan, std::span<const uint32_t> near);
+/// Drops fans that cross triangles which stay, or may cross a fan before. O(n log n) in the triangles.
+void dropCrossing(const TipSurface& surface, std::vector<TipFan>& fans, const Progress* progress);
 
 /// Of the depth of the highest vertex below the apex: how far below it the surface is cut off at most.
 inline constexpr double farthestCut = 6;

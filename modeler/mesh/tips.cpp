@@ -40,7 +40,9 @@ struct WideVertex {
     TangentPlanes directions;  ///< of all, as if through it
     OriginId origin;           ///< of one of its triangles, as `label`
     Label label;
+    bool isCorner = false;    ///< its triangles have more than two labels
     bool hasCreases = false;  ///< its triangles have several labels
+    Label second = noLabel;   ///< another of them
 };
 
 class Tips {
@@ -83,7 +85,7 @@ public:
             for (const uint32_t v : vertices) isTaken[v] = true;
             fans.push_back(std::move(*fan));
         }
-        dropCrossing(fans);
+        dropCrossing(surface_, fans, progress_);
         for (TipFan& fan : fans)
             for (uint32_t& t : fan.removed) t = triangles_[t].number;
         return fans;
@@ -189,7 +191,7 @@ private:
         std::vector<WideVertex> wide;
         std::vector<uint32_t> place(positions_.size(), none);
         for (uint32_t v = 0; v < sums.size(); ++v) {
-            if (!sums[v].isWide()) continue;
+            if (!sums[v].isWide() && !(isConfined_[v] && sums[v].isCreased)) continue;
             place[v] = static_cast<uint32_t>(wide.size());
             wide.push_back({v, {}, {}, 0, noLabel});
         }
@@ -199,13 +201,19 @@ private:
             for (int k = 0; k < 3; ++k) {
                 if (place[t.corners[k]] == none) continue;
                 WideVertex& at = wide[place[t.corners[k]]];
-                at.hasCreases |= at.label != noLabel && at.label != t.label;
-                at.label = t.label, at.origin = t.origin;
+                if (at.label == noLabel) at.label = t.label;
+                if (at.label != t.label) {
+                    at.isCorner |= at.second != noLabel && at.second != t.label;
+                    if (at.second == noLabel) at.second = t.label;
+                    at.hasCreases = true;
+                }
+                at.origin = t.origin;
                 for (size_t i = 0; i < 3; ++i) {
                     at.directions.add(t.normals[i].as<double>(), {});
                     if (static_cast<int>(i) != k) addPlane(t, i, at);
                 }
             }
+        std::erase_if(wide, [&](const WideVertex& at) { return !sums[at.vertex].isWide() && !at.isCorner; });
         return wide;
     }
 
@@ -343,34 +351,6 @@ private:
             vertices.insert(vertices.end(), {corners.x, corners.y, corners.z});
         }
         return vertices;
-    }
-
-    /// Drops fans that cross triangles, or may cross a fan before.
-    void dropCrossing(std::vector<TipFan>& fans) const {
-        std::vector<Box3f> boxes;
-        for (const TipFan& fan : fans) {
-            Box3f box{fan.apex, fan.apex};
-            for (const TipTriangle& t : fan.triangles)
-                for (int k = 0; k < 3; ++k)
-                    if (t.corners[k] != fan.top) box = hull(box, positions_[t.corners[k]]);
-            boxes.push_back(box);
-        }
-        const BoxFinder finder(boxes);
-        std::vector<std::vector<uint32_t>> near(fans.size());
-        std::vector<uint32_t> found;
-        for (uint32_t t = 0; t < triangles_.size(); ++t) {
-            finder.find(boxOf(positions_, triangles_[t].corners), found);
-            for (const uint32_t i : found) near[i].push_back(t);
-        }
-        size_t kept = 0;
-        for (size_t i = 0; i < fans.size() && !cancelled(progress_); ++i) {
-            const auto meets = [&](const Box3f& box) { return !intersection(box, boxes[i]).empty(); };
-            const auto end = boxes.begin() + static_cast<ptrdiff_t>(kept);
-            if (std::any_of(boxes.begin(), end, meets) || crosses(surface_, fans[i], near[i])) continue;
-            boxes[kept] = boxes[i];
-            std::swap(fans[kept++], fans[i]);
-        }
-        fans.resize(kept);
     }
 
     const Mesh& mesh_;

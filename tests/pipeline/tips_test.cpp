@@ -84,6 +84,19 @@ TEST(CompleteTips, StayWhereTheirVertexWasConfined) {
     EXPECT_LT(distanceTo(*mesh, {0.3997, 1.13959, -0.4819}), 1e-4);
 }
 
+/// A roof of four slopes whose apex reaches into cells of which no corner is inside.
+TEST(CompleteTips, FlatPyramidsAreTheirFourSlopes) {
+    for (const char* size : {"12m, 4m, 8m", "12m, 4.1m, 8m", "9m, 2.9m, 8m", "10.1m, 4.1m, 8m", "11m, 4.6m, 8m"})
+        for (const int resolution : {64, 128}) {
+            Context context{nullptr, 2};
+            CrispModel crisp =
+                crispModel("grammar 2\nstart A -> pyramid size (" + std::string(size) + ")\n", resolution, context);
+            const auto mesh = crisp.edit({.tolerance_m = 1e-3}, context);
+            ASSERT_TRUE(mesh.ok());
+            EXPECT_EQ(mesh->triangleCount(), 6u) << size << " at " << resolution;
+        }
+}
+
 TEST(Edits, CanBeCancelledWhileTipsAreSought) {
     Progress progress;
     Context context{&progress, 2};
