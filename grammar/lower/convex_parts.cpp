@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "grammar/lower/convex_solids.h"
 
@@ -173,16 +174,98 @@ std::optional<ConvexPolyhedron> boxFrom(const Box3d& local, const Mat3& axes) {
     return ConvexPolyhedron::of(part, world);
 }
 
-/// The box shrunk about its axis y until it has that volume.
-Box3d shrunk(Box3d box, double volume_m3) {
-    const Vec3d size = box.size(), middle = box.centre();
-    const double share = std::sqrt(std::min(1.0, volume_m3 / (size.x * size.y * size.z)));
-    for (const int axis : {0, 2}) {
-        box.lo[axis] = middle[axis] - share * size[axis] / 2;
-        box.hi[axis] = middle[axis] + share * size[axis] / 2;
+/// Boxes along some axes for a convex piece: one where it comes near, else those of its halves.
+class BoxFitter {
+public:
+    BoxFitter(const Mat3& axes, std::vector<ConvexPolyhedron>& boxes) : axes_(axes), boxes_(boxes) {}
+
+    void fit(const ConvexPolyhedron& piece, int halvings = mostHalvings) {
+        const Box3d whole = boxAlong(piece, axes_);
+        if (piece.volume_m3() > (1 - 1e-4) * volumeOf(whole)) return add(whole);
+        const auto [box, covers] = nearest(piece, whole);
+        if (covers >= nearEnough || halvings == 0 || maxComponent(whole.size()) < 2 * leastSide_m) return add(box);
+        for (const ConvexPolyhedron& half : halvesOf(piece, whole)) fit(half, halvings - 1);
     }
-    return box;
-}
+
+private:
+    static constexpr int mostHalvings = 3;     ///< so that a piece has eight boxes at most
+    static constexpr double nearEnough = 0.9;  ///< of a piece's volume that one box covers
+    static constexpr double leastSide_m = 0.25;
+
+    static double volumeOf(const Box3d& box) {
+        const Vec3d size = box.size();
+        return size.x * size.y * size.z;
+    }
+    Vec3d axis(int k) const { return k == 0 ? axes_.x : k == 1 ? axes_.y : axes_.z; }
+    /// The part of a piece at most so far along an axis, or at least.
+    std::optional<ConvexPolyhedron> below(const ConvexPolyhedron& piece, int k, double end) const {
+        return piece.clipped({axis(k), end});
+    }
+    std::optional<ConvexPolyhedron> above(const ConvexPolyhedron& piece, int k, double begin) const {
+        return piece.clipped({-axis(k), -begin});
+    }
+
+    /// The share of a piece that lies in a box.
+    double share(const ConvexPolyhedron& piece, const Box3d& box) const {
+        std::optional<ConvexPolyhedron> part = piece;
+        for (int k = 0; k < 3 && part; ++k) {
+            part = below(*part, k, box.hi[k]);
+            if (part) part = above(*part, k, box.lo[k]);
+        }
+        return part ? part->volume_m3() / piece.volume_m3() : 0;
+    }
+
+    /// Of the boxes of a piece's volume that its whole box leaves when it is cut off on one side, or all around an
+    /// axis, the one that covers most of the piece; and how much.
+    std::pair<Box3d, double> nearest(const ConvexPolyhedron& piece, const Box3d& whole) const {
+        const double filled = std::min(1.0, piece.volume_m3() / volumeOf(whole));
+        std::pair<Box3d, double> best{whole, -1};
+        const auto offer = [&](const Box3d& box) {
+            if (const double covers = share(piece, box); covers > best.second + 1e-9) best = {box, covers};
+        };
+        for (int k = 0; k < 3; ++k) {
+            const double cut = (1 - filled) * whole.size()[k];
+            Box3d low = whole, high = whole, around = whole;
+            low.hi[k] -= cut;
+            high.lo[k] += cut;
+            for (const int other : {(k + 1) % 3, (k + 2) % 3}) {
+                const double side = (1 - std::sqrt(filled)) / 2 * whole.size()[other];
+                around.lo[other] += side;
+                around.hi[other] -= side;
+            }
+            offer(low);
+            offer(high);
+            offer(around);
+        }
+        return best;
+    }
+
+    /// A piece cut in the middle of the axis along which the halves' boxes are smallest.
+    std::vector<ConvexPolyhedron> halvesOf(const ConvexPolyhedron& piece, const Box3d& whole) const {
+        std::vector<ConvexPolyhedron> best;
+        double least = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < 3; ++k) {
+            if (whole.size()[k] < leastSide_m) continue;
+            const double middle = whole.centre()[k];
+            std::vector<ConvexPolyhedron> halves;
+            double volume = 0;
+            for (auto& half : {below(piece, k, middle), above(piece, k, middle)}) {
+                if (!half) continue;
+                volume += volumeOf(boxAlong(*half, axes_));
+                halves.push_back(*half);
+            }
+            if (volume < least) least = volume, best = std::move(halves);
+        }
+        return best;
+    }
+
+    void add(const Box3d& box) {
+        if (auto made = boxFrom(box, axes_)) boxes_.push_back(std::move(*made));
+    }
+
+    const Mat3& axes_;
+    std::vector<ConvexPolyhedron>& boxes_;
+};
 
 }  // namespace
 
@@ -191,23 +274,9 @@ Result<ConvexParts> convexParts(const derive::Derivation& derivation, const Mode
 }
 
 std::vector<ConvexPolyhedron> boxesOf(const derive::Derivation& derivation, const ConvexParts& parts) {
-    constexpr double leastSlab_m = 0.5;
     std::vector<ConvexPolyhedron> boxes;
-    for (const ConvexPiece& piece : parts.pieces) {
-        const Mat3& axes = derivation.tree.shapes[piece.shape].scope.axes;
-        const Box3d whole = boxAlong(piece.polyhedron, axes);
-        const Vec3d size = whole.size();
-        const bool isBox = piece.polyhedron.volume_m3() > (1 - 1e-4) * size.x * size.y * size.z;
-        const int slabs = isBox ? 1 : std::clamp(static_cast<int>(size.y / leastSlab_m), 1, 5);
-        for (int i = 0; i < slabs; ++i) {
-            const double low = whole.lo.y + size.y * i / slabs, high = whole.lo.y + size.y * (i + 1) / slabs;
-            auto slab = piece.polyhedron.clipped({-axes.y, -low});
-            if (slab) slab = slab->clipped({axes.y, high});
-            if (!slab) continue;
-            if (auto box = boxFrom(shrunk(boxAlong(*slab, axes), slab->volume_m3()), axes))
-                boxes.push_back(std::move(*box));
-        }
-    }
+    for (const ConvexPiece& piece : parts.pieces)
+        BoxFitter(derivation.tree.shapes[piece.shape].scope.axes, boxes).fit(piece.polyhedron);
     return boxes;
 }
 

@@ -32,8 +32,8 @@ struct ConvexParts {
 /// pieces, Error::Input where no piece is left, Error::Cancelled.
 Result<ConvexParts> convexParts(const derive::Derivation& derivation, const Model& model, Progress* progress);
 
-/// The pieces as boxes along the axes of their shapes. What isn't a box becomes up to five, one above the other, each
-/// of the volume that it stands for.
+/// The pieces as boxes along the axes of their shapes. What isn't a box becomes up to eight side by side, each of the
+/// volume that it stands for and flush with it where that covers most of it. O(pieces).
 std::vector<mesh::ConvexPolyhedron> boxesOf(const derive::Derivation& derivation, const ConvexParts& parts);
 
 }  // namespace sgm::lower

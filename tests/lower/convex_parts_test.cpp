@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modeler/core/conventions.h"
 #include "tests/lower/lowered.h"
 
 namespace sgm::lower {
@@ -139,6 +140,27 @@ TEST(ConvexParts, CutsOfEveryKindStayOpen) {
     EXPECT_GT(boxes.pieces, 0.75) << "prisms between cuts at an angle";
     EXPECT_FALSE(hold(polyhedra(parts), {0, 0, 0}));
     EXPECT_FALSE(hold(polyhedra(parts), {0, 1.8, 1.5}));
+}
+
+TEST(ConvexParts, BoxesLeaveRoundAndTurnedOpeningsOpen) {
+    const Lowered model(
+        "grammar 1\nstart A -> cube size (10, 4, .5)\n  - cylinder size (2.4, 9, 2.4) at centre to centre turn (90deg, "
+        "0deg, 0deg) move (-2.5, 0, 0)\n  - cube size (1.6, 1.6, 9) at centre to centre turn (0deg, 0deg, 45deg) move "
+        "(2.5, 0, 0)\n");
+    const std::vector<mesh::ConvexPolyhedron> boxes = boxesOf(model.derivation, partsOf(model));
+    const Overlay overlay(model, boxes);
+    RecordProperty("boxes", fmt::format("{}: {:.4f}, {:.4f} outside", boxes.size(), overlay.pieces, overlay.outside));
+    EXPECT_NEAR(overlay.pieces, 1, 0.05);
+    EXPECT_LT(overlay.outside, 0.06);
+    EXPECT_LT(boxes.size(), 80u);
+    for (const double r : {0.0, 0.5, 0.8})
+        for (int i = 0; i < 8; ++i) {
+            const double a = radians(45.0 * i);
+            EXPECT_FALSE(hold(boxes, {-2.5 + r * std::cos(a), r * std::sin(a), 0})) << r << " " << i;
+            EXPECT_FALSE(hold(boxes, {2.5 + 0.8 * r * std::cos(a), 0.8 * r * std::sin(a), 0})) << r << " " << i;
+        }
+    for (const double x : {-4.9, -.5, .5, 4.9})
+        for (const double y : {-1.9, 0., 1.9}) EXPECT_TRUE(hold(boxes, {x, y, 0})) << x << " " << y;
 }
 
 TEST(ConvexParts, SaysWhereTheyDiffer) {
