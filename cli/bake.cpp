@@ -101,6 +101,7 @@ Status bakeTask(BakeOptions& options) {
     if (!model.ok()) return model.error();
     options.bake.folder = options.folder;
     options.bake.packing = options.pack == "none" ? tiles::Packing::None : tiles::Packing::Meshopt;
+    options.bake.seeksThinParts = !options.quiet;
     options.bake.budget.shapes = options.model.shapeBudget;
     options.bake.budget.seconds = options.model.secondsBudget;
     auto bake = pipeline::Bake::begin(*model, options.bake, context);
@@ -116,6 +117,7 @@ Status bakeTask(BakeOptions& options) {
         journal.note(cell, figures);
     });
     journal.close(done, bake->times());
+    if (!options.quiet) printMeshWarnings(bake->warnings());
     return done;
 }
 

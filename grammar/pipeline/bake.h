@@ -20,6 +20,7 @@ struct BakeRequest {
     double objectCell_m = .3;  ///< of the objects' grids
     int levels = 3;            ///< of detail: objects, coarser objects (where there are three or more), masses
     tiles::Packing packing = tiles::Packing::Meshopt;
+    bool seeksThinParts = false;  ///< look at the first object of each start for parts that its cells lack
     derive::Budget budget;
 };
 
@@ -47,6 +48,8 @@ public:
     /// Makes some of the plan's cells, by index, and what they need.
     Status runCells(const std::vector<size_t>& cells, Context& context, const CellVisitor& told = nullptr);
     const BakeTimes& times() const { return times_; }
+    /// What the cells of objects lack that this task made, where that is sought.
+    std::vector<MeshWarning> warnings() const { return library_.lacks(); }
 
 private:
     Bake(const Model& model, const BakeRequest& request, Context& context);

@@ -34,6 +34,21 @@ std::optional<tiles::LibraryObject> solidBoxOf(const derive::Derivation& object)
 
 }  // namespace
 
+void BakedObjects::lookAtFirstOf(const std::vector<uint32_t>& objects) {
+    std::map<uint32_t, uint32_t> first;  // by start
+    for (const uint32_t object : objects) {
+        const auto [known, isNew] = first.try_emplace(objects_[object].inputs.start, object);
+        if (!isNew) known->second = std::min(known->second, object);
+    }
+    for (const auto& [start, object] : first) lookedAt_.insert(object);
+}
+
+std::vector<MeshWarning> BakedObjects::lacks() const {
+    std::vector<MeshWarning> all;
+    for (const auto& [object, lacks] : lacks_) all.insert(all.end(), lacks.begin(), lacks.end());
+    return all;
+}
+
 std::string BakedObjects::nameOf(uint32_t object, Detail detail) const {
     const uint64_t a = objects_[object].inputs.hash(), b = combine(hashText(model_), a);
     const std::string key = fmt::format("{:016x}{:016x}", a, b);
@@ -73,8 +88,13 @@ Status BakedObjects::makeMeshes(uint32_t object, Context& context) {
     request.meshing.surface = mesh::Surface::Crisp;
     request.meshing.halvings = 0;  // what is thinner than the cells isn't worth its bytes in a town
     request.cell_m = cell_m_;
-    auto meshed = meshObject(*placed.derivation, request, context);
+    const bool isLookedAt = lookedAt_.contains(object);
+    auto meshed = meshObject(*placed.derivation, request, context, isLookedAt ? objects_.nameOf(placed) : "");
     if (!meshed.ok()) return meshed.error();
+    if (isLookedAt) {
+        const std::lock_guard lock(*mutex_);
+        lacks_[object] = std::move(meshed->lacks);
+    }
     const mesh::PackedMesh mesh = mesh::pack(meshed->mesh);
     meshed->mesh = {};
     tiles::LibraryObject made;

@@ -5,7 +5,12 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
 
+#include "grammar/pipeline/floating.h"
 #include "grammar/pipeline/placed_models.h"
 #include "modeler/tiles/cell_content.h"
 #include "modeler/tiles/textures.h"
@@ -26,6 +31,10 @@ public:
 
     /// Of a library that belongs to this model and these settings.
     void setModel(const std::string& digest) { model_ = digest; }
+    /// Of these objects, what the cells of the first one of each start lack is told once it is made.
+    void lookAtFirstOf(const std::vector<uint32_t>& objects);
+    /// What the cells of objects lack that were made since, in the order of the objects.
+    std::vector<MeshWarning> lacks() const;
     /// The object's file, relative to the library: "ab/KEY-0.glb".
     std::string nameOf(uint32_t object, Detail detail) const;
     /// Makes the object's file where it isn't there; Finest and Coarse come together, from one mesh. Error::Input for
@@ -48,6 +57,9 @@ private:
     const tiles::Packing packing_;
     std::string model_;
     tiles::FarColors farColors_;
+    std::set<uint32_t> lookedAt_;
+    std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  ///< of the next
+    std::map<uint32_t, std::vector<MeshWarning>> lacks_;
 };
 
 }  // namespace sgm::pipeline

@@ -65,6 +65,20 @@ TEST_F(BakeProgram, KilledAtAnyMomentItGoesOnToTheSameBytes) {
     EXPECT_EQ(nlohmann::json::parse(manifestOf("whole"))["instances"], 100);
 }
 
+TEST_F(BakeProgram, NamesWhatTheCellsOfObjectsLack) {
+    const std::string file = grammar(
+        "start Town -> cube size (60m, 1m, 60m), for i in 1..3 { size 4 move (12m * i - 24m, 2.5m, 0) place Hut }\n"
+        "start Hut -> cube size (4, 3, 4) + cube size (.05m, 2m, .05m) move (1.03m, 2.4m, .61m)\n");
+    const auto names = [&](const std::string& words) {
+        const Outcome run = sgm("bake " + file + options() + words);
+        EXPECT_EQ(run.code, 0) << run.out;
+        return run.out.find("a 'cube' of 0.05 m is too thin for the cells of 'Hut'") != std::string::npos;
+    };
+    EXPECT_TRUE(names("-o " + path("city")));
+    EXPECT_FALSE(names("-o " + path("city"))) << "it is there already";
+    EXPECT_FALSE(names("-q -o " + path("other")));
+}
+
 TEST_F(BakeProgram, SaysWhatIsWrong) {
     const std::string file = grammar(town);
     const auto refused = [&](const std::string& words, int code, const std::string& why) {
