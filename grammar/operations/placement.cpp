@@ -170,7 +170,9 @@ void needOperator(OperationChecker& checker, const Element& element, const Attri
     checker.error(attribute.span,
                   fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape",
                               attribute.operation->name),
-                  "put '+', '-', '&' or 'morph' before it");
+                  checker.isInPart()
+                      ? "nothing stands in a part yet: place it by 'move', as in 'cylinder move (50%, 0, 0)'"
+                      : "put '+', '-', '&' or 'morph' before it");
 }
 
 void agreeOn(OperationChecker& checker, const Element& element, const Attribute& attribute) {

@@ -81,6 +81,16 @@ void warnOfVersion(const syntax::Ast& ast, syntax::Diagnostics& diagnostics) {
         "'sgm fmt --upgrade' rewrites the file so that it means the same, and shows each such place");
 }
 
+/// Of live shapes that no rule matches and nothing asks about, where a rule matches a similar name.
+void warnOfMisspelt(CheckContext& ctx) {
+    for (MaybeMisspelt& name : ctx.names.unruled)
+        if (!ctx.names.asked.contains(name.symbol))
+            ctx.diagnostics.warning(
+                name.span,
+                fmt::format("no rule matches '{}', so nothing will grow here", ctx.grammar.symbols[name.symbol].name),
+                std::move(name.hint));
+}
+
 /// Everything behind the names, and what follows from it all.
 void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax::Diagnostics& unread,
           syntax::Diagnostics& diagnostics) {
@@ -102,6 +112,7 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     std::stable_partition(grammar.starts.begin(), grammar.starts.end(),
                           [&](const Start& start) { return start.span.source == grammar.sources[0].get(); });
     each(checkDeclarations);
+    warnOfMisspelt(ctx);
     if (diagnostics.hasErrors() || unread.hasErrors()) return;
     if (grammar.starts.empty()) {
         diagnostics.error({grammar.sources[0].get(), 0, 0}, "there is nothing to begin with",

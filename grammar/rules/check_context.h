@@ -31,6 +31,13 @@ struct InheritedName {
 };
 
 /// What a name means. Indices are into the lists of the Grammar.
+/// A live shape's name that no rule matches, and that is like one that some rule does.
+struct MaybeMisspelt {
+    SourceSpan span;
+    SymbolId symbol = none;
+    std::string hint;
+};
+
 struct NameTable {
     std::map<std::string, uint32_t> params;
     std::map<std::string, SymbolId> symbols;
@@ -41,6 +48,8 @@ struct NameTable {
     std::map<std::string, InheritedName> inherited;
     std::set<std::string> joints;               ///< declared by a terminal or a primitive
     std::set<SymbolId> ruled;                   ///< have a rule
+    std::set<SymbolId> asked;                   ///< stand in questions: count(Name), on each(Name), beside Name …
+    std::vector<MaybeMisspelt> unruled;         ///< live shapes that no rule matches
     std::map<SymbolId, uint32_t> unnamedRules;  ///< how many so far
 };
 

@@ -62,7 +62,7 @@ void eachConstant(const Expr& e, const std::vector<Value>& params, Visit visit) 
 
 const Grammar& OperationChecker::grammar() const { return context_.grammar; }
 bool OperationChecker::isInChain() const { return place_.where == Place::Where::Chain; }
-bool OperationChecker::isInFinally() const { return place_.where == Place::Where::Finally; }
+bool OperationChecker::isInPart() const { return place_.isInPart; }
 
 void OperationChecker::checkArguments(const syntax::Attribute& written) {
     const Operation& operation = *written.operation;
@@ -128,7 +128,9 @@ Expr OperationChecker::point(const syntax::Expr& e, std::string_view what) {
 }
 
 std::shared_ptr<const Body> OperationChecker::partBody(const syntax::Body& written) {
+    const bool outside = std::exchange(place_.isInPart, true);
     auto made = std::make_shared<Body>(checkBody(context_, place_, written));
+    place_.isInPart = outside;
     if (!made->grows) return made;
     const auto cutsAbove = [](const Body& body) {
         for (const Element& e : body.siblings[0])
@@ -137,7 +139,8 @@ std::shared_ptr<const Body> OperationChecker::partBody(const syntax::Body& writt
     };
     if (!cutsAbove(*made)) {
         error(made->span, "a part begins with a shape: nothing stands in it yet that could grow",
-              "leave the operator out, or cut a shape further up by '- … through Name'");
+              "leave the operator and its joint out and place the shape by 'move', or cut a shape further up by '- … "
+              "through Name'");
         return made;
     }
     Element group;
@@ -243,7 +246,9 @@ std::optional<uint32_t> OperationNames::findRoads(std::string_view name) const {
 
 std::optional<SymbolId> OperationNames::findSymbol(std::string_view name) const {
     const auto symbol = context_.names.symbols.find(std::string(name));
-    return symbol == context_.names.symbols.end() ? std::nullopt : std::optional(symbol->second);
+    if (symbol == context_.names.symbols.end()) return std::nullopt;
+    context_.names.asked.insert(symbol->second);
+    return symbol->second;
 }
 
 bool OperationNames::isParameter(std::string_view name) const {

@@ -24,6 +24,7 @@ class OperationNames {
 public:
     explicit OperationNames(CheckContext& context) : context_(context) {}
 
+    /// A symbol by name. What is looked for needs no rule of its own.
     std::optional<SymbolId> findSymbol(std::string_view name) const;
     /// The symbol of the start of that name, wherever in the text it stands; nothing after an error.
     std::optional<SymbolId> findStart(const syntax::Expr& name);
@@ -50,9 +51,10 @@ public:
     /// The element that the operation is said of; its content and `live` are known in `agree` alone.
     Element& element() { return element_; }
     const Grammar& grammar() const;
-    /// In the body of a rule with `repeat`; behind its `finally`.
+    /// In the body of a rule with `repeat`.
     bool isInChain() const;
-    bool isInFinally() const;
+    /// In a part of a scope, which begins empty.
+    bool isInPart() const;
 
     /// Every argument as its type asks, numbers within the operation's range: what an operation without `check` gets.
     void checkArguments(const syntax::Attribute& written);

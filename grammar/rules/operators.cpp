@@ -60,6 +60,7 @@ Typed checkCount(CheckContext& ctx, Place& place, const Written& e) {
             nearestHint(arg.text, symbolNames(ctx, false)));
     Value word = makeWord(arg.text);
     word.n[0] = symbol->second;
+    ctx.names.asked.insert(symbol->second);
     return {makeCall(Expr::Kind::Call, fn, e.span, {makeConstant(arg.span, std::move(word))}),
             fn == Fn::Count ? Type::number(Unit::None, true) : Type::of(Value::boolean(false))};
 }

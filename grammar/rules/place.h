@@ -34,6 +34,7 @@ struct Place {
     bool ofMap = false;                        ///< a map's formula: it stands at a place, but belongs to no shape
     uint32_t frame = 0;                        ///< locals so far, in sight or not
     std::map<std::string, uint32_t> ordinals;  ///< of each label in the body
+    bool isInPart = false;                     ///< of a scope that is split, mirrored or repeated: it begins empty
     bool morphs = false;                       ///< an operator or a solid of the body morphs
 
     std::string attribute;  ///< what a range belongs to: names its draw

@@ -43,7 +43,7 @@ void checkRule(CheckContext& ctx, const syntax::RuleDecl& decl) {
     const auto symbolOf = [&](const syntax::Name& name) {
         if (name.empty()) return none;
         const auto symbol = ctx.names.symbols.find(name.text);
-        if (symbol != ctx.names.symbols.end()) return symbol->second;
+        if (symbol != ctx.names.symbols.end()) return *ctx.names.asked.insert(symbol->second).first;
         failUnknown(ctx, name.span, name.text, fmt::format("there is no shape called '{}'", name.text),
                     nearestHint(name.text, symbolNames(ctx, false)));
         return none;

@@ -248,6 +248,9 @@ void readRule(Cursor& cursor, Ast& ast) {
     if (cursor.at(Token::Kind::Number))
         cursor.fail("expected '->' after what the rule matches, found " + cursor.found(),
                     "the weight of a rule among others is written 'weight 30'");
+    if (cursor.at("("))
+        cursor.fail("rules take no parameters",
+                    "declare 'param height = 3m' and hand a value down: '" + rule.symbol.text + " with height = 4m'");
     if (cursor.at(Token::Kind::Word) && !cursor.at("->")) {
         const std::string near = didYouMean(cursor.peekText(), {"beside", "after", "when", "weight", "repeat"});
         cursor.fail(

@@ -200,6 +200,10 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
                                (cursor.at(",", 1) && cursor.at(Token::Kind::Number, 2) ? std::string(cursor.peekText(2))
                                                                                        : "1") +
                                ")")};
+    if (text == ":" && before == "}" && message.starts_with("unexpected"))
+        return Hint{cursor.span(token), "unexpected ':'",
+                    "a name for rules stands behind a shape, within the braces or behind parentheses: "
+                    "'{ cube : Part }', '(a + b) : Part'"};
     if (text == "*" && message.starts_with("unexpected"))
         return Hint{cursor.span(token), "unexpected '*'",
                     "what two shapes share is 'a & b'; a calculation stands in parentheses"};
