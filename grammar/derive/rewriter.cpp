@@ -214,14 +214,26 @@ std::vector<ShapeId> Rewriter::usableBy(uint32_t rule, size_t most) {
     return found;
 }
 
+/// What may be meant instead, the first few of many.
+std::string Rewriter::shapesFor(const std::vector<ShapeId>& usable) const {
+    constexpr size_t most = 3;
+    std::string text;
+    for (size_t i = 0; i < std::min(usable.size(), most); ++i)
+        text += fmt::format("{}'{}'", i == 0 ? ": it matches " : ", ", builder_.tree().path(usable[i]));
+    return text + (usable.size() > most ? " and others" : "");
+}
+
 Result<ShapeId> Rewriter::meant(uint32_t index, const std::string& place) {
     const Rule& rule = grammar_.rules[index];
     const ShapeTree& tree = builder_.tree();
     const auto refuse = [](std::string what) { return Error{Error::Kind::Input, std::move(what)}; };
     if (!place.empty()) {
         const ShapeId s = tree.find(place);
-        if (s == none) return refuse(fmt::format("there is no shape '{}' here", place));
-        if (!usable({index, s})) return refuse(fmt::format("rule '{}' doesn't match '{}' here", rule.name, place));
+        if (s == none)
+            return refuse(fmt::format("there is no shape '{}' here{}", place, shapesFor(usableBy(index, 4))));
+        if (!usable({index, s}))
+            return refuse(
+                fmt::format("rule '{}' doesn't match '{}' here{}", rule.name, place, shapesFor(usableBy(index, 4))));
         return s;
     }
     const std::vector<ShapeId> found = usableBy(index);

@@ -44,6 +44,7 @@ public:
     const std::vector<Application>& applied() const { return applied_; }
 
 private:
+    std::string shapesFor(const std::vector<ShapeId>& usable) const;
     struct Decision {
         uint64_t key;
         Application application;
