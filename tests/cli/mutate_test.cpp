@@ -71,11 +71,12 @@ TEST_F(Cli, MutateShowsNothingTwice) {
 }
 
 TEST_F(Cli, MutateJudgesAlikeAtAnyResolution) {
-    const std::string bare = grammar(
-        "param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3) + cube size (3, 3, width) + cube size (1.7, "
-        "5, 1.3) turn 20deg\n");
+    const std::string part = grammar(
+        "param bare = false\nparam width = 4 in 2..8.0\nstart House -> Mass\nrule Mass when bare -> cube size (width, "
+        "3, "
+        "3) + cube size (3, 3, width) + cube size (1.7, 5, 1.3) turn 20deg\nrule Mass -> sphere size (width, 3, 3)\n");
     for (const char* cells : {"24", "64", "160"})
-        EXPECT_NE(sgm("mutate " + bare + " --rows 1 --cols 1 --resolution " + cells).out.find("featureless"),
+        EXPECT_NE(sgm("mutate " + part + " --rows 2 --cols 3 --spread 1 --resolution " + cells).out.find("featureless"),
                   std::string::npos)
             << cells;
     const std::string clad = grammar(
@@ -93,10 +94,18 @@ TEST_F(Cli, MutateSaysWhatIsWrong) {
     EXPECT_EQ(sgm("mutate " + file + " --lock nothing").code, 2);
     EXPECT_NE(sgm("mutate " + file + " --lock widht").out.find("did you mean 'width'?"), std::string::npos);
     const Outcome none =
-        sgm("mutate " + grammar("param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3)\n") +
+        sgm("mutate " + grammar("param width = 4 in 2..8.0\nstart House -> cube & cube move (width, 0, 0)\n") +
             " --resolution 24 --rows 1 --cols 1");
     EXPECT_EQ(none.code, 1);
-    EXPECT_NE(none.out.find("featureless"), std::string::npos) << none.out;
+    EXPECT_NE(none.out.find("rejected"), std::string::npos) << none.out;
+}
+
+TEST_F(Cli, MutateVariesBareModels) {
+    const Outcome run = sgm("mutate " + grammar("param width = 4 in 2..8.0\nstart House -> cube size (width, 3, 3)\n") +
+                            " --resolution 24 --rows 1 --cols 3 --spread 1");
+    EXPECT_EQ(run.code, 0) << run.out;
+    EXPECT_EQ(run.out.find("featureless"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("2: width="), std::string::npos) << run.out;
 }
 
 TEST_F(Cli, KeepLeavesOutWhatFloats) {
