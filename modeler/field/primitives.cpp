@@ -361,8 +361,10 @@ constexpr Primitive table[] = {
      false,
      nullptr,
      PlanUse::OwnHeight},
-    {"pyramidRoof", "Planes from every edge to one point at the scope's top.", pyramidRoofParameters,
-     solids::pyramidRoof, true, apex, false, nullptr, PlanUse::Fills},
+    {"pyramidRoof",
+     "Planes from every edge to the point at the scope's top over the centre of mass; where an edge looks away from "
+     "it, planes of one pitch.",
+     pyramidRoofParameters, solids::pyramidRoof, true, apex, false, nullptr, PlanUse::Fills},
     curved({"domeRoof", "Quarter ellipses over every edge: a dome as high as the scope.", pyramidRoofParameters,
             solids::domeRoof, true, apex, false, nullptr, PlanUse::Fills}),
     curved({"bellRoof", "As the dome, with a hollow foot.", pyramidRoofParameters, solids::bellRoof, true, apex, false,

@@ -89,7 +89,9 @@ Field pyramidRoof(const PlanField& plan, const RoofFoot& foot, Quantity height) 
     const auto plane = [&](Quantity angle) {
         return RoofSide{{{angle, fixed(plan.graph(), 0), fixed(plan.graph(), 0)}}};
     };
-    if (!seen) return roof(plan, foot, std::vector{plane(pitchFor(0, depthOf(plan)))});
+    if (!seen)
+        return roof(plan, foot,
+                    std::vector{plane(pitchFor(0, plan::deepestPoint(plan.footprint(), plan.formula()).depth))});
     std::vector<RoofSide> sides;
     for (size_t i = 0; i < distances.size(); ++i) sides.push_back(plane(pitchFor(i, -distances[i].at(apex))));
     return roof(plan, foot, sides);

@@ -50,7 +50,8 @@ double valueOf(const Formula& formula, std::span<const Linear> leaves, Vec2 p);
 double leastInside(const Formula& formula, std::span<const Linear> leaves, std::span<const Linear> outline, Box2 box,
                    double tolerance);
 
-/// The point that is deepest inside, and its depth −Φ, metres; both to within a thousandth of the footprint's width.
+/// The point that is deepest inside, and its depth −Φ, metres: to the rounding where the search, good to a thousandth of
+/// the footprint's width, ends beside it.
 struct Deepest {
     Vec2 at;
     double depth = 0;

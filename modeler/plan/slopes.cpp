@@ -100,6 +100,43 @@ struct Search {
         }
         return queue.empty() ? Box2::far : queue.top().bound;
     }
+
+    /// Goes to the line or the vertex of leaves beside the least value found, where it is less there.
+    void settle() {
+        constexpr size_t most = 8;
+        std::vector<std::pair<double, const Linear*>> near;
+        for (const Linear& l : leaves)
+            if (const double off = std::abs(l.at(where) - reached); off < 4 * tolerance) near.emplace_back(off, &l);
+        std::sort(near.begin(), near.end());
+        near.resize(std::min(near.size(), most));
+        for (size_t i = 0; i < near.size(); ++i)
+            for (size_t j = i + 1; j < near.size(); ++j) {
+                tryBetween(*near[i].second, *near[j].second);
+                for (size_t k = j + 1; k < near.size(); ++k)
+                    tryVertex(*near[i].second, *near[j].second, *near[k].second);
+            }
+    }
+
+private:
+    void tryAt(Vec2 at) {
+        if (!(valueOf(formula, outline, at) <= 0)) return;
+        if (const double value = valueOf(formula, leaves, at); value < reached) reached = value, where = at;
+    }
+
+    /// The nearest point where two leaves are equal: of a level ridge.
+    void tryBetween(const Linear& p, const Linear& q) {
+        const Vec2 across{p.a - q.a, p.b - q.b};
+        const double square = dot(across, across);
+        if (square > 1e-9) tryAt(where - across * ((p.at(where) - q.at(where)) / square));
+    }
+
+    /// The point where three leaves are equal.
+    void tryVertex(const Linear& p, const Linear& q, const Linear& r) {
+        const Vec2 a{p.a - q.a, p.b - q.b}, b{p.a - r.a, p.b - r.b};
+        const double area = cross(a, b), u = q.c - p.c, v = r.c - p.c;
+        if (!(std::abs(area) > 1e-9)) return;
+        tryAt({(u * b.z - v * a.z) / area, (a.x * v - b.x * u) / area});
+    }
 };
 
 }  // namespace
@@ -116,6 +153,7 @@ Deepest deepestPoint(const Footprint& footprint, const Formula& formula) {
     const Box2 box = bounds(footprint);
     Search search{formula, distances, distances, 1e-3 * std::min(box.size().x, box.size().z)};
     search.run(box);
+    search.settle();
     return {search.where, -search.reached};
 }
 
@@ -124,6 +162,7 @@ Vec2 leastPoint(const Footprint& footprint, const Formula& formula, std::span<co
     const Box2 box = bounds(footprint);
     Search search{formula, leaves, distances, 1e-4 * std::min(box.size().x, box.size().z)};
     search.run(box);
+    search.settle();
     return search.where;
 }
 

@@ -172,6 +172,19 @@ TEST(Formula, TheLeastInsideIsThatOfASearchBoxByBox) {
     }
 }
 
+TEST(Formula, TheDeepestPointIsExact) {
+    const auto depthOf = [](const Footprint& plan) { return deepestPoint(plan, *monotoneFormula(plan)).depth; };
+    EXPECT_NEAR(depthOf(*ring(30, 24, 7)), 3.5, 1e-9);
+    EXPECT_NEAR(depthOf(*rectangle(12, 8)), 4, 1e-9);
+    EXPECT_NEAR(depthOf(*ngon(7, 5)), 5 * std::cos(pi / 7), 1e-9);
+    // Where the arms of an L meet: in the bisector of the inner corner and as far from the outer sides.
+    EXPECT_NEAR(depthOf(*ell(16, 12, 5, 6)), 3.0, 0.02);
+    const Footprint odd = *ell(16, 12, 5, 6);
+    const Deepest deepest = deepestPoint(odd, *monotoneFormula(odd));
+    for (const Vec2 step : {Vec2{1e-3, 0}, {-1e-3, 0}, {0, 1e-3}, {0, -1e-3}})
+        EXPECT_GE(valueOf(*monotoneFormula(odd), distancesOf(odd), deepest.at + step), -deepest.depth - 1e-12);
+}
+
 TEST(Formula, SlopesReachTheirRidges) {
     const Footprint f = *rectangle(10, 4);
     const Formula formula = *monotoneFormula(f);
