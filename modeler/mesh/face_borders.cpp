@@ -21,7 +21,7 @@ double shareOfPart(size_t k) { return static_cast<double>(k) / static_cast<doubl
 }  // namespace
 
 size_t FaceCreases::samplesOf(State state) {
-    return state == State::Below ? 1 : state == State::Border ? borderParts - 1 : 2;
+    return state == State::Below || state == State::Middle || state == State::Third ? 1 : state == State::Border ? borderParts - 1 : 2;
 }
 
 /// `isFlat`: both pieces lie in one plane.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "modeler/mesh/face_axes.h"
 #include "modeler/mesh/region.h"
@@ -123,6 +124,12 @@ void FaceCreases::ask(const FaceSegment& segment, const Gap& gap) {
         case State::Ends:
             add(gap.a.at), add(gap.b.at);
             break;
+        case State::Middle:
+            add(between(gap.a.at, gap.b.at, 0.5));
+            break;
+        case State::Third:
+            add(gap.wall.point.at);
+            break;
         case State::Crease:
             add(between(gap.at, gap.a.at, probeShare)), add(between(gap.at, gap.b.at, probeShare));
             break;
@@ -139,6 +146,10 @@ void FaceCreases::take(const FaceSegment& segment, uint32_t gap, size_t sample) 
                              b = samples_.point(sample + 1, split.nearB.value);
             return takeEnds(segment, split, a, b);
         }
+        case State::Middle:
+            return takeMiddle(segment, gaps_[gap], sample);
+        case State::Third:
+            return takeThird(segment, gap, sample);
         case State::Crease:
             return takeProbes(segment, gap, sample);
         default:
@@ -170,6 +181,10 @@ void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
         gap.at = inFace(segment, gap.at);  // where a third piece shows, if one cuts the crease off
         projectOntoCrease(gap, isFar ? between(gap.a.at, gap.b.at, 0.5) : gap.at);
         if (isFar && !first) return searchBorder(gap);
+        if (first) {
+            gap.state = State::Middle;
+            return;
+        }
     }
     gap.state = State::Crease;
     if (!first && length(gap.at - before) <= settledShare * grid_->cell_m) gap.state = State::Done;
@@ -187,6 +202,58 @@ void FaceCreases::projectOntoCrease(Gap& gap, Vec3f from) const {
     const double fb = gap.nearB.value + dot(b, p - gap.nearB.point.at.as<double>());
     gap.crossing = (p - a * ((fa * bb - fb * ab) / det) - b * ((fb * aa - fa * ab) / det)).as<float>();
     gap.leaves = length(gap.crossing - from) <= leavingReach * grid_->cell_m;
+}
+
+/// Where two pieces cross outside the face, a third one lies between them that may show far from that: as a ridge above
+/// a slope that it runs into. Amid the gap its field may be the least below the surface alone, as of parts that touch
+/// there: so it is looked at again a little outside the place where it would be the surface.
+void FaceCreases::takeMiddle(const FaceSegment& segment, Gap& gap, size_t sample) {
+    gap.state = State::Crease;
+    const FaceAxes axes(segment.axis);
+    float value;
+    PiecePoint third = samples_.point(sample, value);
+    if (gap.splits >= mostSplits || !isKnown(value) || third.label == gap.a.label || third.label == gap.b.label) return;
+    moveInFace(axes, third, value);
+    if (!moveAlongLine(segment, third)) return;
+    const double slope = axes.length(third.gradient), out = probeShare * double{grid_->cell_m};
+    if (!(slope > 0)) return;
+    for (const int axis : {axes.u, axes.v}) third.at[axis] += static_cast<float>(out * third.gradient[axis] / slope);
+    gap.wall = {third, static_cast<float>(out * slope)};
+    gap.state = State::Third;
+}
+
+void FaceCreases::takeThird(const FaceSegment& segment, uint32_t g, size_t sample) {
+    Gap& gap = gaps_[g];
+    gap.state = State::Crease;
+    float value;
+    PiecePoint third = samples_.point(sample, value);
+    if (third.label != gap.wall.point.label || !(std::abs(value - gap.wall.value) < 0.5f * gap.wall.value)) return;
+    moveInFace(FaceAxes(segment.axis), third, value);
+    if (moveAlongLine(segment, third)) split(g, third);
+}
+
+/// Moves a point on a piece along the piece's line to the nearest place inside the face; false where the line misses
+/// it.
+bool FaceCreases::moveAlongLine(const FaceSegment& segment, PiecePoint& piece) const {
+    if (mayLieAt(segment, piece.at)) return true;
+    const FaceAxes axes(segment.axis);
+    const double way[] = {-static_cast<double>(piece.gradient[axes.v]), static_cast<double>(piece.gradient[axes.u])};
+    const Vec3f low = inFace(segment, grid_->corner(segment.face.x, segment.face.y, segment.face.z)),
+                high = inFace(segment, grid_->corner(segment.face.x + 1, segment.face.y + 1, segment.face.z + 1));
+    double first = -std::numeric_limits<double>::infinity(), last = -first;
+    for (const auto& [axis, step] : {std::pair(axes.u, way[0]), {axes.v, way[1]}}) {
+        const double before = static_cast<double>(low[axis]) - static_cast<double>(piece.at[axis]),
+                     after = static_cast<double>(high[axis]) - static_cast<double>(piece.at[axis]);
+        if (step == 0 && (before > 0 || after < 0)) return false;
+        if (step == 0) continue;
+        first = std::max(first, std::min(before / step, after / step));
+        last = std::min(last, std::max(before / step, after / step));
+    }
+    if (!(first <= last)) return false;
+    const double t = std::clamp(0.0, first, last);
+    piece.at[axes.u] += static_cast<float>(t * way[0]), piece.at[axes.v] += static_cast<float>(t * way[1]);
+    piece.at = inFace(segment, piece.at);
+    return true;
 }
 
 /// Both pieces are looked at close to where their lines cross.

@@ -40,7 +40,7 @@ public:
 private:
     static constexpr int mostSplits = 3;             ///< pieces found between the ends of a segment
     static constexpr float mergedShare = 0x1.0p-8f;  ///< of a cell, within which two breaks are one
-    enum class State : uint8_t { Ends, Crease, Below, Beside, Border, Done };
+    enum class State : uint8_t { Ends, Middle, Third, Crease, Below, Beside, Border, Done };
     /// Two neighbouring pieces of a segment, and the search for the point between them.
     struct Gap {
         uint32_t segment = 0;
@@ -50,7 +50,7 @@ private:
         uint8_t looks = 0, looked = 0;  ///< below a border that are left, and beside it that were taken
         PiecePoint a, b;                ///< where the pieces are known
         LinearField nearA, nearB;       ///< their fields where they were looked at last, nearer to the crease
-        LinearField wall;               ///< between two parts, looked at below the surface
+        LinearField wall;  ///< between two parts, looked at below the surface; a third piece, looked at amid the gap
         Vec3f at;
         Vec3f crossing;       ///< of the two lines, before it was moved into the face
         bool leaves = false;  ///< the crossing lies outside the face, and both pieces were found there
@@ -58,6 +58,8 @@ private:
     void ask(const FaceSegment& segment, const Gap& gap);
     void take(const FaceSegment& segment, uint32_t gap, size_t sample);
     void takeEnds(const FaceSegment& segment, Gap& gap, const PiecePoint& a, const PiecePoint& b);
+    void takeMiddle(const FaceSegment& segment, Gap& gap, size_t sample);
+    void takeThird(const FaceSegment& segment, uint32_t gap, size_t sample);
     void takeProbes(const FaceSegment& segment, uint32_t gap, size_t sample);
     PiecePoint inBracket(const FaceSegment& segment, const PiecePoint& before, double most, size_t sample) const;
     void takeParts(const FaceSegment& segment, uint32_t gap, size_t sample);
@@ -74,6 +76,7 @@ private:
     bool moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const;
     void split(uint32_t gap, const PiecePoint& between);
     Vec3f inFace(const FaceSegment& segment, Vec3f p) const;
+    bool moveAlongLine(const FaceSegment& segment, PiecePoint& piece) const;
     static Vec3f onLine(const Gap& gap, Vec3f p);
     bool mayLieAt(const FaceSegment& segment, Vec3f p) const;
     bool isMonotone(const FaceSegment& segment) const;

@@ -35,5 +35,19 @@ TEST(Simplified, RoughBedsCrossNothing) {
     EXPECT_FALSE(judged->selfIntersects);
 }
 
+/// The ridges of wings run into slopes of the others, on faces whose crossings lie outside them.
+TEST(Simplified, RidgesThatRunIntoSlopesCostFewTriangles) {
+    size_t triangles = 0;
+    for (const char* roof :
+         {"ell(16, 12, 5, 6) extrude 4m gableRoof(45deg)", "tee(16, 12, 5, 6) extrude 4m hipRoof(40deg)"})
+        for (const int cells : {96, 128}) {
+            const auto mesh =
+                written(("grammar 2\nstart A -> footprint " + std::string(roof) + "\n").c_str(), 1, cells);
+            ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+            triangles += mesh->triangleCount();
+        }
+    EXPECT_LE(triangles, 200u);
+}
+
 }  // namespace
 }  // namespace sgm::pipeline
