@@ -175,10 +175,6 @@ NodeRef Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data
         if (operands.size() == 2 && isLiteral(first) && row.commutative && keepsFirst(op, literalOf(first)))
             return {this, operands[1].node};
     }
-    if (row.commutative && operands.size() == 2 && operands[1].node < operands[0].node) {
-        const Operand ordered[] = {operands[1], operands[0]};
-        return {this, insert(op, ordered, data)};
-    }
     return {this, insert(op, operands, data)};
 }
 
@@ -189,6 +185,7 @@ NodeRef Graph::apply(OpCode op, std::initializer_list<NodeRef> operands, uint32_
     const std::span<Operand> list =
         large.empty() ? std::span<Operand>(small.data(), operands.size()) : std::span<Operand>(large);
     std::transform(operands.begin(), operands.end(), list.begin(), [](const NodeRef& n) { return Operand{n.id(), 0}; });
+    if (traits(op).commutative && list.size() == 2 && list[1].node < list[0].node) std::swap(list[0], list[1]);
     return apply(op, list, data);
 }
 

@@ -109,7 +109,9 @@ TEST(Graph, OwnersArePartOfTheStructure) {
     const Operand ab[] = {{g.x().id(), 1}, {g.y().id(), 2}}, ba[] = {{g.y().id(), 2}, {g.x().id(), 1}};
     const Operand other[] = {{g.x().id(), 2}, {g.y().id(), 1}};
     const NodeRef m = g.apply(codeOf<ops::Min>, ab);
-    EXPECT_EQ(m.id(), g.apply(codeOf<ops::Min>, ba).id());
+    EXPECT_EQ(m.id(), g.apply(codeOf<ops::Min>, ab).id());
+    EXPECT_NE(m.id(), g.apply(codeOf<ops::Min>, ba).id()) << "the first of equal ones owns the surface";
+    EXPECT_EQ(g.apply(codeOf<ops::Min>, {g.x(), g.y()}).id(), g.apply(codeOf<ops::Min>, {g.y(), g.x()}).id());
     EXPECT_NE(m.id(), g.apply(codeOf<ops::Min>, other).id());
     EXPECT_EQ(g.operands(m.id())[0].origin, 1u);
 }

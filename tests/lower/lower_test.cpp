@@ -144,6 +144,19 @@ TEST(Owners, AMorphLooksLikeTheFirstOfItsSolidsThatHasALook) {
     EXPECT_NE(material({0, 1, 0}), "wall");
 }
 
+TEST(Owners, TheFirstOfCoplanarPartsOwnsTheSurfaceAlsoBehindACut) {
+    const std::string looks = "grammar 1\nterminal wall color #ff0000\nterminal band color #0000ff\n";
+    for (const char* text :
+         {"wall size (6, 4, .4) + band size (6, 1, .4)",
+          "wall size (6, 4, .4) - cube size (1, 1, 2) move (2, 1.4, 0) + band size (6, 1, .4)",
+          "(wall size (6, 4, .4) - cube size (1, 1, 2) move (2, 1.4, 0)) + band size (6, 1, .4)",
+          "wall size (6, 4, .4) - cube size (1, 1, 2) move (2, 1.4, 0) + (band size (6, 1, .4) - cube size .1)",
+          "wall size (6, 4, .4) & cube size 9 + band size (6, 1, .4)"}) {
+        const Lowered d(looks + "start S -> " + text + "\n");
+        EXPECT_EQ(d.model->provenance.materials[d.owner({-2, 0, .2f}).material].name, "wall") << text;
+    }
+}
+
 TEST(Owners, WhatIsMorphedWithANewcomerLooksLikeTheFirstThatHasALook) {
     const std::string looks = "grammar 1\nterminal wall color #ff0000\nterminal glass color #0000ff\n";
     const auto look = [&](const std::string& text) {
