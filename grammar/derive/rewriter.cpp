@@ -214,9 +214,11 @@ std::vector<ShapeId> Rewriter::usableBy(uint32_t rule, size_t most) {
     return found;
 }
 
-/// What may be meant instead, the first few of many.
-std::string Rewriter::shapesFor(const std::vector<ShapeId>& usable) const {
+/// The shapes that a rule matches, for a message; the first few of many.
+std::string Rewriter::shapesFor(uint32_t rule) {
     constexpr size_t most = 3;
+    const std::vector<ShapeId> usable = usableBy(rule, most + 1);
+    if (builder_.monitor().failed()) (void)builder_.monitor().takeFailure();  // to ask changes nothing
     std::string text;
     for (size_t i = 0; i < std::min(usable.size(), most); ++i)
         text += fmt::format("{}'{}'", i == 0 ? ": it matches " : ", ", builder_.tree().path(usable[i]));
@@ -229,11 +231,9 @@ Result<ShapeId> Rewriter::meant(uint32_t index, const std::string& place) {
     const auto refuse = [](std::string what) { return Error{Error::Kind::Input, std::move(what)}; };
     if (!place.empty()) {
         const ShapeId s = tree.find(place);
-        if (s == none)
-            return refuse(fmt::format("there is no shape '{}' here{}", place, shapesFor(usableBy(index, 4))));
+        if (s == none) return refuse(fmt::format("there is no shape '{}' here{}", place, shapesFor(index)));
         if (!usable({index, s}))
-            return refuse(
-                fmt::format("rule '{}' doesn't match '{}' here{}", rule.name, place, shapesFor(usableBy(index, 4))));
+            return refuse(fmt::format("rule '{}' doesn't match '{}' here{}", rule.name, place, shapesFor(index)));
         return s;
     }
     const std::vector<ShapeId> found = usableBy(index);

@@ -44,13 +44,13 @@ public:
     const std::vector<Application>& applied() const { return applied_; }
 
 private:
-    std::string shapesFor(const std::vector<ShapeId>& usable) const;
     struct Decision {
         uint64_t key;
         Application application;
     };
 
     uint32_t choose(ShapeId shape);
+    std::string shapesFor(uint32_t rule);
     uint32_t draw(ShapeId shape, const std::vector<uint32_t>& rules);
     bool mayMatchLater(ShapeId shape) const;
     bool waits(ShapeId shape) const;

@@ -48,9 +48,11 @@ Result<std::shared_ptr<Session::State>> Session::replayed(std::span<const Applic
     Monitor& monitor = (*state)->builder.monitor();
     monitor.resume(progress);
     for (const Applications& step : steps)
-        for (const Application& a : step) (*state)->rewriter.apply(a);
+        for (const Application& a : step) {
+            (*state)->rewriter.apply(a);
+            if (monitor.failed()) return monitor.takeFailure();  // later steps rewrite what wasn't made
+        }
     monitor.resume(nullptr);
-    if (monitor.failed()) return monitor.takeFailure();
     (*state)->builder.bonds().settle();
     return state;
 }
@@ -76,6 +78,10 @@ Result<ShapeId> Session::meant(uint32_t rule, const std::string& place) {
 }
 
 Status Session::apply(Application application, Progress* progress) {
+    const auto rules = application.shape < tree().shapes.size() ? rulesFor(application.shape) : std::vector<uint32_t>();
+    if (std::find(rules.begin(), rules.end(), application.rule) == rules.end())
+        return Error{Error::Kind::Input,
+                     fmt::format("rule '{}' doesn't match the shape any more", grammar_->rules[application.rule].name)};
     state_->builder.monitor().resume(progress);
     state_->rewriter.apply(application);
     return keep({application});
@@ -121,7 +127,10 @@ Status Session::undo(Progress* progress) {
 Status Session::redo(Progress* progress) {
     if (undone_.empty()) return Done{};
     state_->builder.monitor().resume(progress);
-    for (const Application& a : undone_.back()) state_->rewriter.apply(a);
+    for (const Application& a : undone_.back()) {
+        state_->rewriter.apply(a);
+        if (state_->builder.monitor().failed()) break;
+    }
     if (const Status settled = settle(); !settled.ok()) return settled;
     done_.push_back(std::move(undone_.back()));
     undone_.pop_back();
@@ -164,6 +173,7 @@ Result<std::vector<rules::Derive::Step>> Session::way(Progress* progress) const 
             if (monitor.failed()) (void)monitor.takeFailure();  // to ask changes nothing
             steps.push_back({a.rule, only ? "" : placeOf((*state)->derivation.tree, a.shape), {}});
             rewriter.apply(a);
+            if (monitor.failed()) return monitor.takeFailure();
         }
     return steps;
 }

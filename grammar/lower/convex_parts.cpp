@@ -184,13 +184,15 @@ public:
         if (piece.volume_m3() > (1 - 1e-4) * volumeOf(whole)) return add(whole);
         const auto [box, covers] = nearest(piece, whole);
         if (covers >= nearEnough || halvings == 0 || maxComponent(whole.size()) < 2 * leastSide_m) return add(box);
-        for (const ConvexPolyhedron& half : halvesOf(piece, whole)) fit(half, halvings - 1);
+        const std::vector<ConvexPolyhedron> halves = halvesOf(piece, whole);
+        if (halves.empty()) return add(box);
+        for (const ConvexPolyhedron& half : halves) fit(half, halvings - 1);
     }
 
 private:
-    static constexpr int mostHalvings = 3;     ///< so that a piece has eight boxes at most
-    static constexpr double nearEnough = 0.9;  ///< of a piece's volume that one box covers
-    static constexpr double leastSide_m = 0.25;
+    static constexpr int mostHalvings = 3;       ///< so that a piece has eight boxes at most
+    static constexpr double nearEnough = 0.9;    ///< of a piece's volume that one box covers
+    static constexpr double leastSide_m = 0.25;  ///< of a box that is half of another one
 
     static double volumeOf(const Box3d& box) {
         const Vec3d size = box.size();
@@ -245,7 +247,7 @@ private:
         std::vector<ConvexPolyhedron> best;
         double least = std::numeric_limits<double>::infinity();
         for (int k = 0; k < 3; ++k) {
-            if (whole.size()[k] < leastSide_m) continue;
+            if (whole.size()[k] < 2 * leastSide_m) continue;
             const double middle = whole.centre()[k];
             std::vector<ConvexPolyhedron> halves;
             double volume = 0;
@@ -254,7 +256,7 @@ private:
                 volume += volumeOf(boxAlong(*half, axes_));
                 halves.push_back(*half);
             }
-            if (volume < least) least = volume, best = std::move(halves);
+            if (!halves.empty() && volume < least) least = volume, best = std::move(halves);
         }
         return best;
     }

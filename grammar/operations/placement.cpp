@@ -170,8 +170,9 @@ void needOperator(OperationChecker& checker, const Element& element, const Attri
     checker.error(attribute.span,
                   fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape",
                               attribute.operation->name),
-                  checker.isInPart()
-                      ? "nothing stands in a part yet: place it by 'move', as in 'cylinder move (50%, 0, 0)'"
+                  checker.isInPart() && attribute.operation->name == "at"
+                      ? "put '+', '-', '&' or 'morph' before it; the first shape of a part is placed by 'move', as in "
+                        "'cylinder move (50%, 0, 0)'"
                       : "put '+', '-', '&' or 'morph' before it");
 }
 

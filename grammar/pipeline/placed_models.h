@@ -47,7 +47,7 @@ struct PlacedModel {
     double foot_m = 0;            ///< its lowest point, in its own frame
 };
 
-/// Whether something solid is the object's own, not that of objects in it.
+/// Whether the object has solids of its own, or should have: it holds no others.
 bool hasSolids(const PlacedModel& object);
 
 /// What the objects at all places of a model come to.

@@ -30,7 +30,6 @@ struct InheritedName {
     bool used = false;
 };
 
-/// What a name means. Indices are into the lists of the Grammar.
 /// A live shape's name that no rule matches, and that is like one that some rule does.
 struct MaybeMisspelt {
     SourceSpan span;
@@ -38,6 +37,7 @@ struct MaybeMisspelt {
     std::string hint;
 };
 
+/// What a name means. Indices are into the lists of the Grammar.
 struct NameTable {
     std::map<std::string, uint32_t> params;
     std::map<std::string, SymbolId> symbols;
@@ -49,7 +49,7 @@ struct NameTable {
     std::set<std::string> joints;               ///< declared by a terminal or a primitive
     std::set<SymbolId> ruled;                   ///< have a rule
     std::set<SymbolId> asked;                   ///< stand in questions: count(Name), on each(Name), beside Name …
-    std::vector<MaybeMisspelt> unruled;         ///< live shapes that no rule matches
+    std::vector<MaybeMisspelt> unruled;         ///< live shapes that no rule matches but one of a like name
     std::map<SymbolId, uint32_t> unnamedRules;  ///< how many so far
 };
 

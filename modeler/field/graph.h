@@ -98,8 +98,9 @@ public:
     }
     /// A slot nobody else names; for numbers without a path.
     NodeRef slot(float value);
-    /// A node of the op table; equal structure is shared. Operands with origins, which only min, max, blend and morph may
-    /// have, keep their order, for the first of equal ones owns the surface; commutative ones of a list are ordered.
+    /// A node of the op table; equal structure is shared. Operands with origins, which only min, max, blend and morph
+    /// may have, keep their order, for the first of equal ones owns the surface; commutative ones of a list are
+    /// ordered.
     NodeRef apply(OpCode op, std::span<const Operand> operands, uint32_t data = 0);
     NodeRef apply(OpCode op, std::initializer_list<NodeRef> operands, uint32_t data = 0);
 

@@ -81,8 +81,8 @@ private:
 
     double heightAt(Vec2 p) const { return -plan::valueOf(roof_.formula, roof_.slopes, p); }
 
-    /// Whether the roof bends along a stretch: up on both sides 1, down -1, or not 0. Most of three places decide, for
-    /// another line may cross at one of them.
+    /// How the roof bends along a stretch: 1 where both sides rise from it, -1 where both fall, 0 where it is flat. Two
+    /// of three places decide, for another line may cross at one of them.
     int bendOf(const Line& line, double low, double high) const {
         const Vec2 aside = Vec2{line.way.z, -line.way.x} * std::min(1e-3, (high - low) / 8);
         int up = 0, down = 0;

@@ -21,7 +21,16 @@ double shareOfPart(size_t k) { return static_cast<double>(k) / static_cast<doubl
 }  // namespace
 
 size_t FaceCreases::samplesOf(State state) {
-    return state == State::Below || state == State::Middle || state == State::Third ? 1 : state == State::Border ? borderParts - 1 : 2;
+    switch (state) {
+        case State::Middle:
+        case State::Third:
+        case State::Below:
+            return 1;
+        case State::Border:
+            return borderParts - 1;
+        default:
+            return 2;
+    }
 }
 
 /// `isFlat`: both pieces lie in one plane.

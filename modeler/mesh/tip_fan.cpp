@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -56,8 +57,9 @@ bool crosses(const TipSurface& surface, const TipFan& fan, std::span<const uint3
     return false;
 }
 
-/// Along which depth below an apex is measured: the way from the middle of what is cut off, or the mean of its normals,
-/// beyond which nothing of a flat convex tip lies whatever cells it has vertices in.
+/// The direction along which depth below an apex is measured: the way from the middle of what is cut off, or the mean
+/// of its normals. Along that, no point of a convex tip is higher than its apex, also where all known vertices lie on
+/// one side of it.
 enum class Axis { Way, Normals };
 
 class FanBuilder {
@@ -239,7 +241,10 @@ private:
         }
         const std::vector<float> values = valuesAt(surface_, points);
         double most = 0;
-        for (const float f : values) most = std::max(most, static_cast<double>(std::abs(f)));
+        for (const float f : values) {
+            if (!std::isfinite(f)) return std::numeric_limits<double>::infinity();
+            most = std::max(most, static_cast<double>(std::abs(f)));
+        }
         return most;
     }
 

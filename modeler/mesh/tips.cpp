@@ -33,7 +33,7 @@ struct Candidate {
     Vec3d apex;
 };
 
-/// A vertex around which normals differ a lot.
+/// A vertex around which normals differ a lot, or a corner that was kept in its cell.
 struct WideVertex {
     uint32_t vertex;
     TangentPlanes planes;      ///< of vertices beside it that lie on them, relative to it

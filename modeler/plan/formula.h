@@ -50,15 +50,15 @@ double valueOf(const Formula& formula, std::span<const Linear> leaves, Vec2 p);
 double leastInside(const Formula& formula, std::span<const Linear> leaves, std::span<const Linear> outline, Box2 box,
                    double tolerance);
 
-/// The point that is deepest inside, and its depth −Φ, metres: to the rounding where the search, good to a thousandth of
-/// the footprint's width, ends beside it.
+/// The point that is deepest inside, and its depth −Φ, metres. A search finds it to a thousandth of the footprint's
+/// width; the edges around that place tell it exactly.
 struct Deepest {
     Vec2 at;
     double depth = 0;
 };
 Deepest deepestPoint(const Footprint& footprint, const Formula& formula);
-/// Where inside the footprint the formula is least with these leaves, within 1e-4 of its width: a
-/// point of a roof's ridge, whatever its pitches.
+/// Where inside the footprint the formula is least with these leaves, a point of a roof's ridge,
+/// whatever its pitches. As exact as deepestPoint.
 Vec2 leastPoint(const Footprint& footprint, const Formula& formula, std::span<const Linear> leaves);
 
 /// How far the slope of an edge reaches inward, square to the edge, from the point at `share` (0 … 1) of its length: to

@@ -102,7 +102,8 @@ Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Pr
                         const FloorFilter& isFloor = {});
 
 /// The part of `mesh` that is floor the agent can stand on: a sheet with borders, in one chunk; bare where `mesh` is.
-/// Triangles that are walkable in part are halved down to a voxel, edge to edge. O(triangles + columns under them).
+/// Triangles that are walkable in part are halved down to a voxel, edge to edge. O(triangles + columns of the
+/// boxes around those that are halved, each round).
 mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave);
 
 }  // namespace sgm::volume

@@ -5,13 +5,12 @@
 #include <tuple>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "modeler/volume/cave.h"
 
 namespace sgm::volume {
 namespace {
-
-constexpr uint32_t nowhere = ~0u;
 
 /// Whether the agent can stand, by place.
 class Walkable {

@@ -161,8 +161,9 @@ void Walk::measureFloors() {
     cave_.headroom = {headrooms.front(), headrooms[headrooms.size() / 2], headrooms.back()};
 }
 
-/// Whether the agent can stand on the span: from where its ball rests, or up to a step higher, to its height the ball
-/// is clear of rock. What rises no higher than a step beside it is stepped upon, so that stairs are one walk.
+/// Whether the agent can stand on the span. Its ball must be clear of rock from some height up to the agent's own; the
+/// ball rests there or hangs at most a step higher. So rock beside it that is no higher than a step is stepped upon,
+/// and stairs are one walk.
 bool Walk::canStand(const Span& span) const {
     if (!gentle(span) || spaceOf_[span.first] == nowhere) return false;
     const float least = radius_m_ - half_m_;

@@ -149,6 +149,33 @@ TEST(Sessions, ACancelledStepChangesNothing) {
     EXPECT_TRUE(s.derivation().ok());
 }
 
+TEST(Sessions, ManyStepsAreCancelledAmidThem) {
+    Session s = begun(
+        "grammar 1\nstart S -> for k in 1..1500 { cube move (3 * k, 0, 0) : A }\nrule R1: A -> + sphere at +y : B\n"
+        "rule R2: B -> + cone at +y\n");
+    ASSERT_TRUE(s.applyRest().ok());
+    const std::string whole = sessionTree(s);
+    Progress cancelled;
+    cancelled.cancel();
+    EXPECT_EQ(s.derivation(&cancelled).error().kind, Error::Kind::Cancelled);
+    EXPECT_EQ(s.way(&cancelled).error().kind, Error::Kind::Cancelled);
+    ASSERT_TRUE(s.undo().ok());
+    const std::string start = sessionTree(s);
+    EXPECT_EQ(s.redo(&cancelled).error().kind, Error::Kind::Cancelled);
+    EXPECT_EQ(sessionTree(s), start);
+    ASSERT_TRUE(s.redo().ok());
+    EXPECT_EQ(sessionTree(s), whole);
+}
+
+TEST(Sessions, ShapesThatAreGoneAreRefused) {
+    Session s = begun("grammar 1\nstart S -> cube : A\nrule R1: A -> + sphere at +x : B\nrule R2: B -> + cone at +y\n");
+    const auto a = s.live()[0];
+    ASSERT_TRUE(step(s, "R1").ok());
+    EXPECT_FALSE(s.apply({ruleCalled(s, "R1"), a}).ok()) << "rewritten already";
+    EXPECT_FALSE(s.apply({ruleCalled(s, "R2"), 99}).ok()) << "never made";
+    EXPECT_TRUE(step(s, "R2").ok());
+}
+
 TEST(Sessions, WaysNamePlacesAndUnnamedRulesAndRunAgain) {
     const std::string text =
         "grammar 1\nstart S -> for k in 1..3 { cube move (3 * k, 0, 0) : A }\nrule A -> + sphere at +y : B\nrule A "

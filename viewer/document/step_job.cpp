@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "modeler/core/guarded.h"
 
 namespace sgm::document {
@@ -16,6 +18,12 @@ void StepJob::end() {
     if (thread_.joinable()) thread_.join();
     closing_ = std::make_unique<Progress>();
     view_.reset();
+    drop();
+    retired_.reset();
+}
+
+/// Lets go of the stepper: there is no view once the outcome is taken.
+void StepJob::drop() {
     made_.reset();
     stepper_.reset();
 }
@@ -46,7 +54,10 @@ void StepJob::change(Change change) {
         Result<std::string> what = change(progress);
         if (!what.ok()) return what.error();
         Result<StepView> view = stepper_->view(closing_.get());
-        if (!view.ok()) return view.error();
+        if (!view.ok()) {
+            drop();  // it has gone on, and nobody sees where
+            return view.error();
+        }
         made_ = std::make_shared<const StepView>(std::move(*view));
         outcome_.what = std::move(*what);
         return Done{};
@@ -69,7 +80,10 @@ void StepJob::follow(std::shared_ptr<const rules::Grammar> grammar, derive::Opti
     change(
         [this, grammar = std::move(grammar), options = std::move(options)](Progress& progress) -> Result<std::string> {
             const Result<size_t> kept = stepper_->follow(grammar, options, &progress);
-            if (!kept.ok()) return kept.error();
+            if (!kept.ok()) {
+                drop();
+                return kept.error();
+            }
             return fmt::format("{} steps hold in the new text", *kept);
         });
 }
@@ -102,8 +116,11 @@ void StepJob::redo() {
 
 void StepJob::save(std::shared_ptr<const syntax::Ast> ast, std::string name) {
     if (!view_) return;
-    run([this, ast = std::move(ast), name = std::move(name)](Progress&) -> Status {
-        outcome_.edit = stepper_->save(*ast, name);
+    run([this, ast = std::move(ast), name = std::move(name)](Progress& progress) -> Status {
+        edits::Edit edit = stepper_->save(*ast, name, &progress);
+        if (cancelled(&progress)) return cancelledError();
+        outcome_.edit = std::move(edit);
+        outcome_.ast = ast;
         outcome_.what = "Save way " + name;
         return Done{};
     });

@@ -19,8 +19,9 @@ public:
     /// What a piece of work came to.
     struct Outcome {
         Status done = Done{};
-        std::string what;                 ///< one sentence for the user where it went well
-        std::optional<edits::Edit> edit;  ///< what `save` writes
+        std::string what;                        ///< one sentence for the user where it went well
+        std::optional<edits::Edit> edit;         ///< what `save` writes
+        std::shared_ptr<const syntax::Ast> ast;  ///< into which text
     };
 
     /// `notify` is called from the thread when there is something to take.
@@ -40,7 +41,7 @@ public:
     void undo();
     void redo();
     void save(std::shared_ptr<const syntax::Ast> ast, std::string name);
-    /// As Stepper::follow.
+    /// As Stepper::follow. The derivation by hand ends where that isn't done.
     void follow(std::shared_ptr<const rules::Grammar> grammar, derive::Options options);
 
     /// Stops what runs; after it everything is as before.
@@ -59,6 +60,7 @@ private:
     /// Changes the stepper and says what was done.
     using Change = std::function<Result<std::string>(Progress& progress)>;
     void change(Change change);
+    void drop();
     void step(std::string what, std::function<Status(Stepper&, Progress&)> take);
     void run(std::function<Status(Progress& progress)> work);
 

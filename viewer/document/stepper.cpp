@@ -27,6 +27,7 @@ Result<Stepper> Stepper::begin(const std::shared_ptr<const rules::Grammar>& gram
     if (way == grammar->derives.end())
         return Error{Error::Kind::Usage, fmt::format("the grammar has no derive way '{}'", options.derive)};
     for (const rules::Derive::Step& step : way->steps) {
+        if (cancelled(progress)) return cancelledError();
         const auto shape = stepper.session_.meant(step.rule, step.place);
         if (!shape.ok()) return shape.error();
         if (const Status done = stepper.apply(*shape, step.rule, progress); !done.ok()) return done.error();
@@ -93,9 +94,9 @@ Status Stepper::undo(Progress* progress) { return session_.undo(progress); }
 Status Stepper::redo(Progress* progress) { return session_.redo(progress); }
 
 Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options,
-                        const std::string& name, const rules::Loader& loader) {
+                        const std::string& name, const rules::Loader& loader, Progress* progress) {
     if (!session.canUndo()) return refused("no rule was applied yet, so there is no way to save");
-    const auto steps = session.way();
+    const auto steps = session.way(progress);
     if (!steps.ok()) return steps.error();
     std::string text = derive::fileWithWay(grammar, name, derive::wayText(grammar, name, *steps));
     syntax::Diagnostics problems;
@@ -103,7 +104,7 @@ Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& gr
                                      operations::table(), loader, problems);
     if (!changed) return refused(fmt::format("can't save this way as '{}': {}", name, problems.all()[0].message));
     options.derive = name;
-    const auto derived = derive::derive(changed, options, nullptr), here = session.derivation();
+    const auto derived = derive::derive(changed, options, progress), here = session.derivation(progress);
     if (!derived.ok()) return derived.error();
     if (!here.ok()) return here.error();
     if (derive::toText(*derived, false) != derive::toText(*here, false))
@@ -111,23 +112,25 @@ Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& gr
     return WithWay{std::move(text), changed};
 }
 
-edits::Edit Stepper::save(const syntax::Ast& ast, const std::string& name, const rules::Loader& loader) const {
+edits::Edit Stepper::save(const syntax::Ast& ast, const std::string& name, Progress* progress,
+                          const rules::Loader& loader) const {
     if (ast.source->text() != grammar_->sources[0]->text())
         return refused("the text has changed since this way was begun");
-    const auto saved = withWay(session_, *grammar_, options_, name, loader);
+    const auto saved = withWay(session_, *grammar_, options_, name, loader, progress);
     if (!saved.ok()) return saved.error();
     return difference(ast.source->text(), saved->text);
 }
 
 Result<size_t> Stepper::follow(const std::shared_ptr<const rules::Grammar>& grammar, derive::Options options,
                                Progress* progress) {
-    const auto steps = session_.way();
+    const auto steps = session_.way(progress);
     if (!steps.ok()) return steps.error();
     options.derive.clear();
     auto begun = begin(grammar, options, progress);
     if (!begun.ok()) return begun.error();
     size_t kept = 0;
     for (const rules::Derive::Step& step : *steps) {
+        if (cancelled(progress)) return cancelledError();
         const std::string& name = grammar_->rules[step.rule].name;
         if (!begun->apply(step.place.empty() ? name : name + " at " + step.place, progress).ok()) break;
         ++kept;

@@ -63,7 +63,7 @@ public:
 
     /// The edit that writes that line into the text: in place of the way of that name, else behind the last one.
     /// Refused unless running the line gives this very tree. `ast` must be what the grammar was checked from.
-    edits::Edit save(const syntax::Ast& ast, const std::string& name,
+    edits::Edit save(const syntax::Ast& ast, const std::string& name, Progress* progress = nullptr,
                      const rules::Loader& loader = pipeline::fileLoader()) const;
 
     /// The same way in another text of the grammar, as far as its rules still match. The number of steps kept.
@@ -87,6 +87,6 @@ struct WithWay {
 /// The text of `grammar` with the session's way in it, tried: running it must give the session's very tree. `grammar`
 /// is the session's own or one that differs from it in `derive` lines alone. What `sgm step` and the panel save.
 Result<WithWay> withWay(const derive::Session& session, const rules::Grammar& grammar, derive::Options options,
-                        const std::string& name, const rules::Loader& loader);
+                        const std::string& name, const rules::Loader& loader, Progress* progress = nullptr);
 
 }  // namespace sgm::document

@@ -191,12 +191,15 @@ void Workbench::beginSteps(const std::string& way) {
     if (!shown()) return;
     derive::Options options = shown()->options;
     options.derive = way;
-    byHand_.steppedAt = document.revision();
+    byHand_.steppedAt = shown()->revision;
     steps.begin(shown()->grammar, options);
 }
 
 void Workbench::stepped(const document::StepJob::Outcome& outcome) {
+    if (!steps.view()) byHand_.derivation = nullptr;
     if (!outcome.done) return say(outcome.done.error().message, true);
+    if (outcome.edit && outcome.ast != document.ast())
+        return say("The text has changed while the way was tried: nothing was saved", true);
     if (outcome.edit) return edit(*outcome.edit, outcome.what);
     byHand_.derivation = steps.view()->derivation;
     say(outcome.what);
