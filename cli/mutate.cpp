@@ -50,11 +50,11 @@ struct Tried {
     std::optional<Model> model;
     std::string why;
     std::vector<pipeline::MeshWarning> warnings;  ///< of the model as it is
-    bool isBare = false;                          ///< a few planes and nothing on them
+    bool isFeatureless = false;                   ///< a few planes and nothing on them
 };
-/// A bare model is worth showing where `mayBeBare`.
+/// A bare model is worth showing where `mayBeFeatureless`.
 Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const rules::Grammar>& grammar,
-                    const std::vector<NamedValue>& values, bool mayBeBare, Progress* progress) {
+                    const std::vector<NamedValue>& values, bool mayBeFeatureless, Progress* progress) {
     const auto options = optionsFor(*grammar, with(request, values));
     if (!options.ok()) return options.error();
     Context context{progress, request.threads};
@@ -75,9 +75,9 @@ Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const ru
         warnings = std::move(*found);
     }
     const auto why = degenerate(meshed->mesh, meshed->grid.cell_m);
-    const bool isBare = why == bare;
-    if (why && !(isBare && mayBeBare)) return Tried{{}, *why, std::move(warnings), isBare};
-    return Tried{std::move(*model), {}, std::move(warnings), isBare};
+    const bool isFeatureless = why == featureless;
+    if (why && !(isFeatureless && mayBeFeatureless)) return Tried{{}, *why, std::move(warnings), isFeatureless};
+    return Tried{std::move(*model), {}, std::move(warnings), isFeatureless};
 }
 
 /// "wide=3 tall=4"; "as it is" where nothing is changed.
@@ -97,7 +97,7 @@ Result<std::vector<Variation>> search(const MutateRequest& request,
     const std::set<std::string> locked(request.lock.begin(), request.lock.end());
     std::set<std::string> seen;
     const size_t most = 8 * wanted + 16;
-    bool mayBeBare = true;  // as the model itself is
+    bool mayBeFeatureless = true;  // as the model itself is
     for (size_t k = 0; found.size() < wanted && k < most; ++k) {
         std::vector<NamedValue> values;
         if (k > 0) values = variation(*grammar, request.model, locked, request.spread, combine(request.model.seed, k));
@@ -105,9 +105,9 @@ Result<std::vector<Variation>> search(const MutateRequest& request,
             ++rejected["the same as another"];
             continue;
         }
-        auto one = tried(request, grammar, values, mayBeBare, progress);
+        auto one = tried(request, grammar, values, mayBeFeatureless, progress);
         if (!one.ok()) return one.error();
-        if (k == 0) mayBeBare = one->isBare;
+        if (k == 0) mayBeFeatureless = one->isFeatureless;
         if (k == 0 && one->model && !request.quiet) printWarnings(*one->model);
         printMeshWarnings(one->warnings);
         if (one->model)

@@ -103,7 +103,7 @@ std::optional<std::string> degenerate(const mesh::Mesh& mesh, float cell_m) {
     }
     if (greatest < 0.5 * all && pieces.size() > 8) return "dust";
     if (floating > 0.05 * all) return "floating";
-    if (shareOnFewPlanes(mesh, cell_m) > 0.97) return std::string(bare);
+    if (shareOnFewPlanes(mesh, cell_m) > 0.97) return std::string(featureless);
     return std::nullopt;
 }
 

@@ -20,7 +20,7 @@ std::vector<document::edits::NamedValue> variation(const rules::Grammar& grammar
                                                    const std::set<std::string>& locked, double spread, uint64_t seed);
 
 /// What `degenerate` says of a few bare planes.
-inline constexpr std::string_view bare = "featureless";
+inline constexpr std::string_view featureless = "featureless";
 /// Why a model isn't worth a look: nothing solid; mostly debris; parts in the air; or a few bare planes. Empty for a
 /// good one. `cell_m` is that of the mesh.
 std::optional<std::string> degenerate(const mesh::Mesh& mesh, float cell_m);
