@@ -29,11 +29,12 @@ constexpr double leastStep_m = 1e-4;
 
 constexpr OperationArgument turtleArguments[] = {
     {"letters", ArgumentType::Name, "the lsystem whose letters it reads"},
-    {"way", ArgumentType::Name, "upward: it begins at the foot of the scope and rises; else it goes along x", true}};
+    {"way", ArgumentType::Name, "upward: it begins at the foot of the scope and rises; else it begins amid the scope and goes along x", true}};
 
 void warnOfUnusedParts(OperationChecker& checker, const Parts& turtle) {
     const rules::Lsystem& lsystem = checker.grammar().lsystems[turtle.index];
     const auto letters = rules::lettersOf(lsystem);
+    if (letters.empty()) return;  // the axiom wasn't read
     for (const Parts::Part& part : turtle.parts)
         if (!rules::holdsLetter(letters, part.label[0]))
             checker.warning(
