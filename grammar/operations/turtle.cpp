@@ -29,7 +29,8 @@ constexpr double leastStep_m = 1e-4;
 
 constexpr OperationArgument turtleArguments[] = {
     {"letters", ArgumentType::Name, "the lsystem whose letters it reads"},
-    {"way", ArgumentType::Name, "upward: it begins at the foot of the scope and rises; else it begins amid the scope and goes along x", true}};
+    {"way", ArgumentType::Name,
+     "upward: it begins at the foot of the scope and rises; else it begins amid the scope and goes along x", true}};
 
 void warnOfUnusedParts(OperationChecker& checker, const Parts& turtle) {
     const rules::Lsystem& lsystem = checker.grammar().lsystems[turtle.index];
