@@ -52,7 +52,7 @@ struct Tried {
     std::vector<pipeline::MeshWarning> warnings;  ///< of the model as it is
     bool isFeatureless = false;                   ///< a few planes and nothing on them
 };
-/// A bare model is worth showing where `mayBeFeatureless`.
+/// A featureless model is worth showing where `mayBeFeatureless`.
 Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const rules::Grammar>& grammar,
                     const std::vector<NamedValue>& values, bool mayBeFeatureless, Progress* progress) {
     const auto options = optionsFor(*grammar, with(request, values));

@@ -39,6 +39,8 @@ public:
     bool failed() const { return failure_.has_value(); }
     /// Why it failed; from then on it hasn't.
     Error takeFailure() { return *std::exchange(failure_, std::nullopt); }
+    /// Forgets a failure of what changes nothing: a guard that was evaluated for a message or a list.
+    void discardFailure() { failure_.reset(); }
     /// Ends the derivation with a sentence located at `span` and the present rule, path and seed, and what to do.
     void fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span, const char* fix = "");
     /// The same of a budget that shapes without end would spend.

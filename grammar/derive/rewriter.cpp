@@ -218,7 +218,7 @@ std::vector<ShapeId> Rewriter::usableBy(uint32_t rule, size_t most) {
 std::string Rewriter::shapesFor(uint32_t rule) {
     constexpr size_t most = 3;
     const std::vector<ShapeId> usable = usableBy(rule, most + 1);
-    if (builder_.monitor().failed()) (void)builder_.monitor().takeFailure();  // to ask changes nothing
+    builder_.monitor().discardFailure();
     std::string text;
     for (size_t i = 0; i < std::min(usable.size(), most); ++i)
         text += fmt::format("{}'{}'", i == 0 ? ": it matches " : ", ", builder_.tree().path(usable[i]));

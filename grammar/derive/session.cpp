@@ -65,8 +65,7 @@ std::vector<uint32_t> Session::rulesFor(ShapeId shape) {
     std::vector<uint32_t> found;
     for (const uint32_t rule : grammar_->symbols[tree().shapes[shape].symbol].rules) {
         if (state_->rewriter.usable({rule, shape})) found.push_back(rule);
-        // A guard that asks for what is not set fails; to ask it changes nothing.
-        if (state_->builder.monitor().failed()) (void)state_->builder.monitor().takeFailure();
+        state_->builder.monitor().discardFailure();
     }
     return found;
 }
@@ -78,8 +77,9 @@ Result<ShapeId> Session::meant(uint32_t rule, const std::string& place) {
 }
 
 Status Session::apply(Application application, Progress* progress) {
-    const auto rules = application.shape < tree().shapes.size() ? rulesFor(application.shape) : std::vector<uint32_t>();
-    if (std::find(rules.begin(), rules.end(), application.rule) == rules.end())
+    const bool isUsable = application.shape < tree().shapes.size() && state_->rewriter.usable(application);
+    state_->builder.monitor().discardFailure();
+    if (!isUsable)
         return Error{Error::Kind::Input,
                      fmt::format("rule '{}' doesn't match the shape any more", grammar_->rules[application.rule].name)};
     state_->builder.monitor().resume(progress);
@@ -170,7 +170,7 @@ Result<std::vector<rules::Derive::Step>> Session::way(Progress* progress) const 
                                          "that stood otherwise when it was chosen",
                                          steps.size() + 1, rule.name)};
             const bool only = rewriter.usableBy(a.rule, 2).size() == 1;
-            if (monitor.failed()) (void)monitor.takeFailure();  // to ask changes nothing
+            monitor.discardFailure();
             steps.push_back({a.rule, only ? "" : placeOf((*state)->derivation.tree, a.shape), {}});
             rewriter.apply(a);
             if (monitor.failed()) return monitor.takeFailure();

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "grammar/lower/convex_solids.h"
+#include "grammar/lower/scope_lines.h"
 
 namespace sgm::lower {
 namespace {
@@ -198,13 +199,12 @@ private:
         const Vec3d size = box.size();
         return size.x * size.y * size.z;
     }
-    Vec3d axis(int k) const { return k == 0 ? axes_.x : k == 1 ? axes_.y : axes_.z; }
     /// The part of a piece at most so far along an axis, or at least.
     std::optional<ConvexPolyhedron> below(const ConvexPolyhedron& piece, int k, double end) const {
-        return piece.clipped({axis(k), end});
+        return piece.clipped({axes_ * alongAxis(k), end});
     }
     std::optional<ConvexPolyhedron> above(const ConvexPolyhedron& piece, int k, double begin) const {
-        return piece.clipped({-axis(k), -begin});
+        return piece.clipped({-(axes_ * alongAxis(k)), -begin});
     }
 
     /// The share of a piece that lies in a box.

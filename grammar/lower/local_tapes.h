@@ -24,15 +24,15 @@ public:
     /// `tape` has to stay.
     explicit LocalTapes(const eval::Tape& tape) : tape_(tape) {}
 
-    /// Prepares for boxes within this one: the whole tape is looked at once for all of them.
-    void enter(const Box3f& around) { shortenTo(tape_, {&around, 1}, {&entered_, 1}); }
+    /// Shortens the tape to a box, once for all boxes within it.
+    void shortenAround(const Box3f& box) { shortenTo(tape_, {&box, 1}, {&around_, 1}); }
 
-    /// Calls visit(i, tape) for those of at most `mostBoxes` boxes, all in the one entered, that may hold surface.
+    /// Calls visit(i, tape) for those of at most `mostBoxes` boxes, all in that box, that may hold surface.
     template <class Visit>
     void visit(std::span<const Box3f> boxes, Visit&& visit) {
-        if (entered_.isEmpty) return;
+        if (around_.isEmpty) return;
         const Box3f all = boxAround(boxes);
-        shortenTo(entered_.tape, {&all, 1}, {&all_, 1});
+        shortenTo(around_.tape, {&all, 1}, {&all_, 1});
         if (all_.isEmpty) return;
         std::array<Box3f, mostBoxes / boxesPerTape> around;
         const size_t count = (boxes.size() + boxesPerTape - 1) / boxesPerTape;
@@ -74,7 +74,7 @@ private:
     }
 
     const eval::Tape& tape_;
-    Local entered_, all_;
+    Local around_, all_;
     std::array<Local, mostBoxes / boxesPerTape> groups_;
     std::array<Local, boxesPerTape> each_;
     eval::Workspace workspace_;
@@ -130,7 +130,7 @@ void orderByPlace(std::span<Item> items) {
 
 /// Calls probe(prober, items, boxes, number of the group) for groups of at most LocalTapes::mostBoxes items that follow
 /// each other, on `threads` threads (0: all), each with a prober that `make` makes; ticks for every item. A prober has
-/// boxOf(item), in which it looks, and tapes(), which have been entered around the boxes.
+/// boxOf(item), in which it looks, and tapes(), which are shortened around the boxes.
 template <class Item, class Make, class Probe>
 void probeInGroups(std::span<Item> items, int threads, Progress* progress, const char* stage, Make make, Probe probe) {
     constexpr size_t groupsAtOnce = LocalTapes::boxesPerTape;
@@ -153,7 +153,7 @@ void probeInGroups(std::span<Item> items, int threads, Progress* progress, const
                 boxes[g - first].push_back(prober.boxOf(item));
                 around = hull(around, boxes[g - first].back());
             }
-        prober.tapes().enter(around);
+        prober.tapes().shortenAround(around);
         for (size_t g = first; g < end && !cancelled(progress); ++g) {
             probe(prober, itemsOf(g), boxes[g - first], g);
             for (size_t i = 0; i < itemsOf(g).size(); ++i) tick(progress);

@@ -127,7 +127,7 @@ Status Bake::layOut(Context& context) {
     for (const uint32_t object : used) named.emplace_back(library_.nameOf(object, Detail::Finest), object);
     std::sort(named.begin(), named.end());
     for (const auto& [name, object] : named) used_.push_back(object);
-    if (request_.seeksThinParts) library_.lookAtFirstOf(used_);
+    if (request_.seeksThinParts) library_.inspectFirstOfEachStart();
     return cancelled(context.progress) ? Status(cancelledError()) : Status(Done{});
 }
 

@@ -49,7 +49,7 @@ public:
     Status runCells(const std::vector<size_t>& cells, Context& context, const CellVisitor& told = nullptr);
     const BakeTimes& times() const { return times_; }
     /// What the cells of objects lack that this task made, where that is sought.
-    std::vector<MeshWarning> warnings() const { return library_.lacks(); }
+    std::vector<MeshWarning> warnings() const { return library_.warnings(); }
 
 private:
     Bake(const Model& model, const BakeRequest& request, Context& context);

@@ -34,18 +34,9 @@ std::optional<tiles::LibraryObject> solidBoxOf(const derive::Derivation& object)
 
 }  // namespace
 
-void BakedObjects::lookAtFirstOf(const std::vector<uint32_t>& objects) {
-    std::map<uint32_t, uint32_t> first;  // by start
-    for (const uint32_t object : objects) {
-        const auto [known, isNew] = first.try_emplace(objects_[object].inputs.start, object);
-        if (!isNew) known->second = std::min(known->second, object);
-    }
-    for (const auto& [start, object] : first) lookedAt_.insert(object);
-}
-
-std::vector<MeshWarning> BakedObjects::lacks() const {
+std::vector<MeshWarning> BakedObjects::warnings() const {
     std::vector<MeshWarning> all;
-    for (const auto& [object, lacks] : lacks_) all.insert(all.end(), lacks.begin(), lacks.end());
+    for (const auto& [object, some] : warnings_) all.insert(all.end(), some.begin(), some.end());
     return all;
 }
 
@@ -88,12 +79,12 @@ Status BakedObjects::makeMeshes(uint32_t object, Context& context) {
     request.meshing.surface = mesh::Surface::Crisp;
     request.meshing.halvings = 0;  // what is thinner than the cells isn't worth its bytes in a town
     request.cell_m = cell_m_;
-    const bool isLookedAt = lookedAt_.contains(object);
-    auto meshed = meshObject(*placed.derivation, request, context, isLookedAt ? objects_.nameOf(placed) : "");
+    const bool isInspected = inspected_.contains(object);
+    auto meshed = meshObject(*placed.derivation, request, context, isInspected ? objects_.nameOf(placed) : "");
     if (!meshed.ok()) return meshed.error();
-    if (isLookedAt) {
+    if (isInspected) {
         const std::lock_guard lock(*mutex_);
-        lacks_[object] = std::move(meshed->lacks);
+        warnings_[object] = std::move(meshed->lacks);
     }
     const mesh::PackedMesh mesh = mesh::pack(meshed->mesh);
     meshed->mesh = {};

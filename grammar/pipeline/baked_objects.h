@@ -31,10 +31,10 @@ public:
 
     /// Of a library that belongs to this model and these settings.
     void setModel(const std::string& digest) { model_ = digest; }
-    /// Of these objects, what the cells of the first one of each start lack is told once it is made.
-    void lookAtFirstOf(const std::vector<uint32_t>& objects);
-    /// What the cells of objects lack that were made since, in the order of the objects.
-    std::vector<MeshWarning> lacks() const;
+    /// From now on `make` also finds out what the cells of the first object of each start lack.
+    void inspectFirstOfEachStart() { inspected_ = objects_.firstOfEachStart(); }
+    /// What it found, in the order of the objects.
+    std::vector<MeshWarning> warnings() const;
     /// The object's file, relative to the library: "ab/KEY-0.glb".
     std::string nameOf(uint32_t object, Detail detail) const;
     /// Makes the object's file where it isn't there; Finest and Coarse come together, from one mesh. Error::Input for
@@ -57,9 +57,9 @@ private:
     const tiles::Packing packing_;
     std::string model_;
     tiles::FarColors farColors_;
-    std::set<uint32_t> lookedAt_;
+    std::set<uint32_t> inspected_;
     std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  ///< of the next
-    std::map<uint32_t, std::vector<MeshWarning>> lacks_;
+    std::map<uint32_t, std::vector<MeshWarning>> warnings_;               ///< by object
 };
 
 }  // namespace sgm::pipeline

@@ -54,10 +54,10 @@ public:
         : d_(d), budget_(budget), context_(context) {}
 
     /// `e` with numbers in place of figures, which `told` gets too.
-    Expr put(Expr e, std::string& told) {
+    Expr substitute(Expr e, std::string& told) {
         if (e.kind == Expr::Kind::Figure) {
             const auto figure = static_cast<Figure>(e.index);
-            const double n = figure == Figure::Report ? sumOf(static_cast<uint32_t>(e.value.num())) : of(figure);
+            const double n = figure == Figure::Report ? sumOf(static_cast<uint32_t>(e.value.num())) : valueOf(figure);
             Expr number = constantOf(std::move(e), n, told);
             if (figure == Figure::Floating && n > 0) told += ": " + floatersOf(d_);
             return number;
@@ -69,14 +69,14 @@ public:
                 std::count_if(shapes.begin(), shapes.end(), [&](const Shape& s) { return s.symbol == symbol; });
             return constantOf(std::move(e), static_cast<double>(n), told);
         }
-        for (Expr& arg : e.args) arg = put(std::move(arg), told);
+        for (Expr& arg : e.args) arg = substitute(std::move(arg), told);
         return e;
     }
     /// Why a figure couldn't be had.
     const Status& failure() const { return failure_; }
 
 private:
-    double of(Figure figure) {
+    double valueOf(Figure figure) {
         switch (figure) {
             case Figure::Bonds:
                 return static_cast<double>(d_.tree.bonds().all.size());
@@ -149,7 +149,7 @@ Result<std::vector<Verdict>> runChecks(const std::shared_ptr<const rules::Gramma
         bool passed = false;
         if (done.ok()) {
             FiguresOf figures(*derivation, options.budget, context);
-            const Expr expect = figures.put(check.expect, told);
+            const Expr expect = figures.substitute(check.expect, told);
             done = figures.failure();
             derive::Place place;
             place.tree = &derivation->tree;

@@ -20,8 +20,8 @@ struct Verdict {
 };
 
 /// Runs every `check` of the grammar with its settings over the defaults. Figures of objects that `place` puts are of
-/// those at all places. Error::Budget where so many seconds are over when a check begins: it has what is
-/// left then, and so has each object that it asks about. Error::Cancelled.
+/// those at all places. Error::Budget where so many seconds are over when a check begins; its derivation has
+/// what is left then, and so has that of each object whose figures it uses. Error::Cancelled.
 Result<std::vector<Verdict>> runChecks(const std::shared_ptr<const rules::Grammar>& grammar, uint64_t seed,
                                        Context& context, double seconds = 60);
 

@@ -147,6 +147,14 @@ uint64_t PlacedModels::shapesOf(uint32_t index) {
     return shapes_[index] = count;
 }
 
+std::set<uint32_t> PlacedModels::firstOfEachStart() const {
+    std::set<uint32_t> first, starts;
+    for (uint32_t i = 0; i < size(); ++i)
+        if (objects_[i].same == i && hasSolids(objects_[i]) && starts.insert(objects_[i].inputs.start).second)
+            first.insert(i);
+    return first;
+}
+
 PlacedFigures PlacedModels::figures() const {
     PlacedFigures all{0, 0, std::vector<derive::Reported>(model_.grammar->reports.size())};
     std::unordered_map<uint32_t, PlacedFigures> known;

@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <thread>
 #include <unordered_map>
 #include <vector>
@@ -85,6 +86,8 @@ public:
     };
     /// All places in tree order, those in objects after the one that holds them. Error::Budget for more than `most`.
     Result<std::vector<Place>> places(uint64_t most) const;
+    /// The first object of each start that has solids of its own: what is reported of it holds for others like it.
+    std::set<uint32_t> firstOfEachStart() const;
     /// Of all places, those in objects too. For derived objects that `release` hasn't taken.
     PlacedFigures figures() const;
     /// Shapes of the object with those of all that it holds.

@@ -37,9 +37,9 @@ public:
 
     /// Meshes the first object of each start for what its cells lack.
     Result<std::vector<MeshWarning>> lookAtFirst() {
-        seekThinParts();
+        inspected_ = objects_.firstOfEachStart();
         std::vector<uint32_t> todo = different();
-        std::erase_if(todo, [&](uint32_t object) { return !isLookedAt_[object]; });
+        std::erase_if(todo, [&](uint32_t object) { return !inspected_.contains(object); });
         const auto made = meshAll(todo);
         if (!made.ok()) return made.error();
         return lacksOf(*made);
@@ -48,7 +48,7 @@ public:
     /// Lowers and meshes every object.
     Status makeAll(MadeScene& out) {
         meshed_.assign(objects_.size(), derive::none);
-        if (request_.seeksThinParts) seekThinParts();
+        if (request_.seeksThinParts) inspected_ = objects_.firstOfEachStart();
         const std::vector<uint32_t> todo = different();
         auto meshed = meshAll(todo);
         if (!meshed.ok()) return meshed.error();
@@ -117,14 +117,6 @@ private:
         return made;
     }
 
-    /// Chooses the first object of each start that has something solid of its own.
-    void seekThinParts() {
-        isLookedAt_.assign(objects_.size(), false);
-        std::set<uint32_t> starts;
-        for (const uint32_t i : different())
-            if (hasSolids(objects_[i])) isLookedAt_[i] = starts.insert(objects_[i].inputs.start).second;
-    }
-
     static std::vector<MeshWarning> lacksOf(const std::vector<Made>& made) {
         std::vector<MeshWarning> all;
         for (const Made& m : made) all.insert(all.end(), m.lacks.begin(), m.lacks.end());
@@ -135,13 +127,13 @@ private:
     Status make(uint32_t index, Made* out, Context& own) {
         const PlacedModel& object = objects_[index];
         if (!hasSolids(object)) return Done{};
-        const bool isLookedAt = !isLookedAt_.empty() && isLookedAt_[index];
+        const bool isInspected = inspected_.contains(index);
         Derivation derivation = object.holds.empty() ? objects_.release(index) : Derivation(*object.derivation);
         if (!out) {
             const auto model = makeModel(std::move(derivation), own, Objects::Apart);
             return model.ok() ? Status(Done{}) : Status(model.error());
         }
-        const std::string name = isLookedAt ? objects_.nameOf(object) : std::string();
+        const std::string name = isInspected ? objects_.nameOf(object) : std::string();
         auto made = meshObject(std::move(derivation), request_, own, name);
         if (!made.ok()) return made.error();
         *out = {mesh::pack(made->mesh), std::move(made->provenance), std::move(made->lacks)};
@@ -151,7 +143,7 @@ private:
     const SceneRequest& request_;
     Context& context_;
     PlacedModels objects_;
-    std::vector<bool> isLookedAt_;  ///< by object, for what its cells lack; empty: none is
+    std::set<uint32_t> inspected_;  ///< objects of which is told what their cells lack
     std::vector<uint32_t> meshed_;  ///< by object: its index in Scene::objects; none: nothing solid of its own
 };
 

@@ -60,7 +60,7 @@ void checkLive(CheckContext& ctx, const syntax::Name& name, Element& out) {
     std::vector<std::string> ruled;
     for (const SymbolId id : ctx.names.ruled) ruled.push_back(ctx.grammar.symbols[id].name);
     if (std::string hint = nearestHint(name.text, ruled); !hint.empty())
-        ctx.names.unruled.push_back({name.span, out.live, std::move(hint)});
+        ctx.names.misspelt.push_back({name.span, out.live, std::move(hint)});
 }
 
 void checkContent(CheckContext& ctx, Place& place, const Written& e, Element& out) {

@@ -81,10 +81,10 @@ void warnOfVersion(const syntax::Ast& ast, syntax::Diagnostics& diagnostics) {
         "'sgm fmt --upgrade' rewrites the file so that it means the same, and shows each such place");
 }
 
-/// Of live shapes that no rule matches and nothing asks about, where a rule matches a similar name.
+/// A warning for names of live shapes that may be misspelt: no rule matches them and nothing refers to them.
 void warnOfMisspelt(CheckContext& ctx) {
-    for (MaybeMisspelt& name : ctx.names.unruled)
-        if (!ctx.names.asked.contains(name.symbol))
+    for (MaybeMisspelt& name : ctx.names.misspelt)
+        if (!ctx.names.referenced.contains(name.symbol))
             ctx.diagnostics.warning(
                 name.span,
                 fmt::format("no rule matches '{}', so nothing will grow here", ctx.grammar.symbols[name.symbol].name),

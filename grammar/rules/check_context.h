@@ -30,7 +30,7 @@ struct InheritedName {
     bool used = false;
 };
 
-/// A live shape's name that no rule matches, and that is like one that some rule does.
+/// A live shape's name that no rule matches, although a rule matches a similar one.
 struct MaybeMisspelt {
     SourceSpan span;
     SymbolId symbol = none;
@@ -48,8 +48,8 @@ struct NameTable {
     std::map<std::string, InheritedName> inherited;
     std::set<std::string> joints;               ///< declared by a terminal or a primitive
     std::set<SymbolId> ruled;                   ///< have a rule
-    std::set<SymbolId> asked;                   ///< stand in questions: count(Name), on each(Name), beside Name …
-    std::vector<MaybeMisspelt> unruled;         ///< live shapes that no rule matches but one of a like name
+    std::set<SymbolId> referenced;              ///< by count(Name), on each(Name), beside Name …
+    std::vector<MaybeMisspelt> misspelt;        ///< perhaps
     std::map<SymbolId, uint32_t> unnamedRules;  ///< how many so far
 };
 

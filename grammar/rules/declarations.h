@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,5 +42,8 @@ SymbolId declareSymbol(CheckContext& ctx, const syntax::Name& name);
 bool isDeclaredTwice(CheckContext& ctx, Declared::Spans& seen, const syntax::Name& name, std::string_view kind);
 /// The names of all shapes, or of terminals and of shapes with rules alone.
 std::vector<std::string> symbolNames(CheckContext& ctx, bool withRulesOnly);
+/// The symbol of that name, where there is one, for a place that refers to its shapes, as count(Name): a name that is
+/// referred to needs no rule of its own.
+std::optional<SymbolId> findReferenced(CheckContext& ctx, const std::string& name);
 
 }  // namespace sgm::rules

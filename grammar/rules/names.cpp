@@ -160,6 +160,13 @@ void declareNames(CheckContext& ctx, const syntax::Ast& ast) {
         for (const field::PrimitiveJoint& joint : row.joints) ctx.names.joints.insert(std::string(joint.name));
 }
 
+std::optional<SymbolId> findReferenced(CheckContext& ctx, const std::string& name) {
+    const auto symbol = ctx.names.symbols.find(name);
+    if (symbol == ctx.names.symbols.end()) return std::nullopt;
+    ctx.names.referenced.insert(symbol->second);
+    return symbol->second;
+}
+
 std::vector<std::string> symbolNames(CheckContext& ctx, bool withRulesOnly) {
     std::vector<std::string> names;
     for (const auto& [name, id] : ctx.names.symbols)

@@ -245,10 +245,7 @@ std::optional<uint32_t> OperationNames::findRoads(std::string_view name) const {
 }
 
 std::optional<SymbolId> OperationNames::findSymbol(std::string_view name) const {
-    const auto symbol = context_.names.symbols.find(std::string(name));
-    if (symbol == context_.names.symbols.end()) return std::nullopt;
-    context_.names.asked.insert(symbol->second);
-    return symbol->second;
+    return findReferenced(context_, std::string(name));
 }
 
 bool OperationNames::isParameter(std::string_view name) const {

@@ -24,7 +24,7 @@ class OperationNames {
 public:
     explicit OperationNames(CheckContext& context) : context_(context) {}
 
-    /// A symbol by name. What is looked for needs no rule of its own.
+    /// As findReferenced.
     std::optional<SymbolId> findSymbol(std::string_view name) const;
     /// The symbol of the start of that name, wherever in the text it stands; nothing after an error.
     std::optional<SymbolId> findStart(const syntax::Expr& name);

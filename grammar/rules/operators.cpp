@@ -52,15 +52,14 @@ Typed checkCount(CheckContext& ctx, Place& place, const Written& e) {
     if (fn != Fn::Count && (place.where != Where::Guard || place.ofMap))
         return fail(ctx, e.span, fmt::format("'{}' tells how things stand when a rule is chosen", e.text),
                     "ask in the rule's 'when', and give the rule a body of its own");
-    const auto symbol = ctx.names.symbols.find(arg.text);
-    if (arg.kind != Written::Kind::Name || symbol == ctx.names.symbols.end())
+    const auto symbol = arg.kind == Written::Kind::Name ? findReferenced(ctx, arg.text) : std::nullopt;
+    if (!symbol)
         return failUnknown(
             ctx, arg.span, arg.text,
             fmt::format("'{}' takes the name of a shape, and there is none called '{}'", e.text, arg.span.text()),
             nearestHint(arg.text, symbolNames(ctx, false)));
     Value word = makeWord(arg.text);
-    word.n[0] = symbol->second;
-    ctx.names.asked.insert(symbol->second);
+    word.n[0] = *symbol;
     return {makeCall(Expr::Kind::Call, fn, e.span, {makeConstant(arg.span, std::move(word))}),
             fn == Fn::Count ? Type::number(Unit::None, true) : Type::of(Value::boolean(false))};
 }

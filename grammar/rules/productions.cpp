@@ -42,8 +42,7 @@ void checkRule(CheckContext& ctx, const syntax::RuleDecl& decl) {
             ctx.diagnostics.error(out.weight->span, fmt::format("a weight is no less than 0, not {}", toText(*weight)));
     const auto symbolOf = [&](const syntax::Name& name) {
         if (name.empty()) return none;
-        const auto symbol = ctx.names.symbols.find(name.text);
-        if (symbol != ctx.names.symbols.end()) return *ctx.names.asked.insert(symbol->second).first;
+        if (const auto symbol = findReferenced(ctx, name.text)) return *symbol;
         failUnknown(ctx, name.span, name.text, fmt::format("there is no shape called '{}'", name.text),
                     nearestHint(name.text, symbolNames(ctx, false)));
         return none;

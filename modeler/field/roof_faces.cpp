@@ -196,9 +196,10 @@ std::vector<RoofFace> roofFaces(const Primitive& row, const plan::Footprint& foo
     if (row.plan != PlanUse::Fills) return {};
     std::vector<RoofFace> faces;
     if (row.name == "pyramidRoof") faces = pyramidSlopes(footprint, valueAt(arguments, 1), height_m);
+    const bool isPyramid = !faces.empty();
     RoofFace& apex = faces.emplace_back();
     apex.kind = RoofFace::Kind::Apex;
-    apex.at = faces.size() > 1 ? plan::centroid(footprint) : plan::deepestPoint(footprint, formula).at;
+    apex.at = isPyramid ? plan::centroid(footprint) : plan::deepestPoint(footprint, formula).at;
     apex.outward = {0, 1};
     apex.height_m = height_m;
     apex.corners.fill(pointAt(apex.at, height_m));

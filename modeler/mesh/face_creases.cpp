@@ -19,6 +19,7 @@ constexpr float faceMargin = 0x1.0p-7f;     ///< of a cell, kept free of breaks 
 constexpr double parallelSquare = 1e-3;     ///< squared sine of the least angle of a crease outside its face
 constexpr double leavingReach = 2.0;        ///< of a cell, that a crossing may lie outside its face
 constexpr double stopShare = 0x1p-10;       ///< of a cell, between a crossing and the piece that ends its crease
+constexpr float thirdShare = 0.5f;          ///< of the field expected outside a third piece: how far it may be off
 constexpr float confirmShare = 0.0625f;     ///< of a cell times the slope: the field beside a confirmed crossing
 
 /// The nearest point at which a piece's field is zero.
@@ -227,7 +228,8 @@ void FaceCreases::takeThird(const FaceSegment& segment, uint32_t g, size_t sampl
     gap.state = State::Crease;
     float value;
     PiecePoint third = samples_.point(sample, value);
-    if (third.label != gap.wall.point.label || !(std::abs(value - gap.wall.value) < 0.5f * gap.wall.value)) return;
+    if (third.label != gap.wall.point.label || !(std::abs(value - gap.wall.value) < thirdShare * gap.wall.value))
+        return;
     moveInFace(FaceAxes(segment.axis), third, value);
     if (moveAlongLine(segment, third)) split(g, third);
 }

@@ -60,7 +60,7 @@ bool crosses(const TipSurface& surface, const TipFan& fan, std::span<const uint3
 /// The direction along which depth below an apex is measured: the way from the middle of what is cut off, or the mean
 /// of its normals. Along that, no point of a convex tip is higher than its apex, also where all known vertices lie on
 /// one side of it.
-enum class Axis { Way, Normals };
+enum class Axis { FromMiddle, MeanNormal };
 
 class FanBuilder {
 public:
@@ -149,7 +149,7 @@ private:
         double count = 0;
         visitCorners([&](uint32_t v, Vec3f n) { middle += at(v), normal += n.as<double>(), ++count; });
         const Vec3d way = apex_ - middle * (1 / count);
-        return normalized(axisKind_ == Axis::Way ? way : dot(normal, way) < 0 ? normal * -1.0 : normal);
+        return normalized(axisKind_ == Axis::FromMiddle ? way : dot(normal, way) < 0 ? normal * -1.0 : normal);
     }
 
     /// Where the planes of what is cut off meet; those farther than twice `within_m` from the apex don't count, half of
@@ -279,8 +279,9 @@ std::vector<float> valuesAt(const TipSurface& surface, std::span<const Vec3f> po
 
 std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d apex) {
     std::optional<TipFan> first;
-    for (const Axis axis : {Axis::Way, Axis::Normals}) {
-        if (axis == Axis::Normals && !surface.isConfined[vertex]) break;  // cells hold steeper tips on one side
+    for (const Axis axis : {Axis::FromMiddle, Axis::MeanNormal}) {
+        if (axis == Axis::MeanNormal && !surface.isConfined[vertex])
+            break;  // only a confined vertex may lie far to one side
         FanBuilder builder(surface, vertex, apex, axis);
         for (const bool takesConfined : {false, true})
             for (const double cut : cuts) {

@@ -38,11 +38,11 @@ struct WideVertex {
     uint32_t vertex;
     TangentPlanes planes;      ///< of vertices beside it that lie on them, relative to it
     TangentPlanes directions;  ///< of all, as if through it
-    OriginId origin;           ///< of one of its triangles, as `label`
-    Label label;
-    bool isCorner = false;    ///< its triangles have more than two labels
-    bool hasCreases = false;  ///< its triangles have several labels
-    Label second = noLabel;   ///< another of them
+    OriginId origin;           ///< of one of its triangles
+    Label label;               ///< of one of its triangles
+    bool isCorner = false;     ///< its triangles have more than two labels
+    bool hasCreases = false;   ///< its triangles have several labels
+    Label second = noLabel;    ///< another label of its triangles
 };
 
 class Tips {

@@ -101,7 +101,8 @@ using FloorFilter = std::function<std::vector<bool>(std::span<const Vec3f> place
 Result<Cave> surveyCave(const Volume& level, const Agent& agent, bool hollow, Progress* progress,
                         const FloorFilter& isFloor = {});
 
-/// The part of `mesh` that is floor the agent can stand on: a sheet with borders, in one chunk; bare where `mesh` is.
+/// The part of `mesh` that is floor the agent can stand on: a sheet with borders, in one chunk, of positions
+/// only where `mesh` is.
 /// Triangles that are walkable in part are halved down to a voxel, edge to edge. O(triangles + columns of the
 /// boxes around those that are halved, each round).
 mesh::Mesh walkableFloor(const mesh::Mesh& mesh, const Cave& cave);

@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "modeler/mesh/corners.h"
 #include "modeler/volume/cave.h"
 
 namespace sgm::volume {
@@ -129,23 +130,24 @@ private:
             normals.insert(normals.end(), c.normals.begin(), c.normals.end());
             hasLabels_ = hasLabels_ || !c.labels.empty();
         }
-        for (const mesh::Chunk& c : mesh.chunks) {
-            auto hard = c.cornerNormals.begin();
-            for (size_t t = 0; t < c.triangles.size(); ++t) {
+        const mesh::CornerNormalTable own = mesh::collectCornerNormals(mesh);
+        size_t number = 0;  // of a triangle of the mesh
+        for (const mesh::Chunk& c : mesh.chunks)
+            for (size_t t = 0; t < c.triangles.size(); ++t, ++number) {
                 Piece piece{c.inMesh(c.triangles[t]), {}};
                 const Vec3f a = place(piece, 0), b = place(piece, 1), d = place(piece, 2);
                 if (normalized(cross(b - a, d - a)).y < upright) continue;
                 if (!positionsOnly_) {
-                    for (int k = 0; k < 3; ++k) piece.normals[k] = normals[piece.corners[k]];
-                    while (hard != c.cornerNormals.end() && hard->corner < 3 * t) ++hard;
-                    for (; hard != c.cornerNormals.end() && hard->corner < 3 * t + 3; ++hard)
-                        piece.normals[hard->corner % 3] = hard->normal;
+                    for (int k = 0; k < 3; ++k) {
+                        const uint32_t ownNormal = own.empty() ? mesh::noIndex : own.of[number][k];
+                        piece.normals[k] =
+                            ownNormal == mesh::noIndex ? normals[piece.corners[k]] : own.normals[ownNormal];
+                    }
                     piece.origin = c.origins[t];
                 }
                 if (!c.labels.empty()) piece.label = c.labels[t];
                 pieces_.push_back(piece);
             }
-        }
     }
 
     Vec3f place(const Piece& piece, int corner) const { return positions_[piece.corners[corner]]; }

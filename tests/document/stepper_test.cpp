@@ -119,7 +119,7 @@ TEST_F(Steps, BeginWithAWay) {
 /// Waits for what the job came to.
 StepJob::Outcome taken(StepJob& job) {
     for (;;) {
-        if (auto outcome = job.take()) return *outcome;
+        if (auto outcome = job.takeOutcome()) return *outcome;
         std::this_thread::yield();
     }
 }

@@ -240,7 +240,7 @@ TEST(CaveReport, TheFloorMeshIsTheWalkableFloor) {
     for (const Vec3f& p : points) EXPECT_NEAR(p.y, -1.5f, 0.01f);
 }
 
-/// Area in m², of a bare mesh in one chunk; each edge between two triangles is run through once a way.
+/// Area in m², of a mesh in one chunk; each edge between two triangles is run through once a way.
 double areaOfSheet(const mesh::Chunk& c) {
     double area = 0;
     std::set<std::pair<uint32_t, uint32_t>> edges;

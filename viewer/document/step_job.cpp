@@ -28,7 +28,7 @@ void StepJob::drop() {
     stepper_.reset();
 }
 
-std::optional<StepJob::Outcome> StepJob::take() {
+std::optional<StepJob::Outcome> StepJob::takeOutcome() {
     if (!ended_ || !thread_.joinable()) return std::nullopt;
     thread_.join();
     retired_ = std::exchange(view_, made_);
@@ -88,10 +88,10 @@ void StepJob::follow(std::shared_ptr<const rules::Grammar> grammar, derive::Opti
         });
 }
 
-void StepJob::step(std::string what, std::function<Status(Stepper&, Progress&)> take) {
+void StepJob::step(std::string what, std::function<Status(Stepper&, Progress&)> apply) {
     if (!view_) return;
-    change([this, what = std::move(what), take = std::move(take)](Progress& progress) -> Result<std::string> {
-        const Status done = take(*stepper_, progress);
+    change([this, what = std::move(what), apply = std::move(apply)](Progress& progress) -> Result<std::string> {
+        const Status done = apply(*stepper_, progress);
         if (!done.ok()) return done.error();
         return what;
     });

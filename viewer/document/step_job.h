@@ -1,5 +1,5 @@
 // A derivation by hand on a thread of its own, for the Step panel: one piece of work at a time.
-// Enters: steps that the user asks for. Leaves: views and outcomes, taken over by `take`. Assumes that one thread calls
+// Enters: requests. Leaves: immutable views and outcomes, taken over by `takeOutcome`. Assumes that one thread calls
 // it; large trees and many steps take seconds, which the window doesn't wait for.
 #pragma once
 
@@ -54,14 +54,14 @@ public:
     /// As of the last outcome that was taken; null before the first and after `end`.
     const std::shared_ptr<const StepView>& view() const { return view_; }
     /// The outcome, once, when it has come.
-    std::optional<Outcome> take();
+    std::optional<Outcome> takeOutcome();
 
 private:
     /// Changes the stepper and says what was done.
     using Change = std::function<Result<std::string>(Progress& progress)>;
     void change(Change change);
     void drop();
-    void step(std::string what, std::function<Status(Stepper&, Progress&)> take);
+    void step(std::string what, std::function<Status(Stepper&, Progress&)> apply);
     void run(std::function<Status(Progress& progress)> work);
 
     std::function<void()> notify_;

@@ -31,7 +31,7 @@ struct StepRow {
 struct StepView {
     std::shared_ptr<const rules::Grammar> grammar;
     std::vector<StepRow> rows;  ///< live shapes in tree order
-    derive::ShapeTree tree;
+    derive::ShapeTree tree;  ///< whose numbers the rows have: those of `derivation` are other ones, without dead shapes
     bool canUndo = false, canRedo = false;
     std::shared_ptr<const derive::Derivation> derivation;  ///< so far, for ShowRequest::byHand
     /// What led to it; Error::Input where no `derive` line can say it, or nothing was done.

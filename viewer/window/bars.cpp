@@ -149,14 +149,13 @@ void Bars::status(Workbench& bench) {
         return cancelled;
     };
     if (bench.busy()) {
-        const bool stepping = bench.steps.running(), deriving = bench.session.busy();
-        if (progress(stepping   ? bench.steps.stage()
-                     : deriving ? bench.session.stage()
-                                : bench.uploader.stage(),
-                     stepping   ? bench.steps.fraction()
-                     : deriving ? bench.session.fraction()
-                                : bench.uploader.fraction(),
-                     "progress.cancel", "Keep the model as it is; Esc while a slider is held"))
+        const auto show = [&](const auto& worker) {
+            return progress(worker.stage(), worker.fraction(), "progress.cancel",
+                            "Keep the model as it is; Esc while a slider is held");
+        };
+        if (bench.steps.running()  ? show(bench.steps)
+            : bench.session.busy() ? show(bench.session)
+                                   : show(bench.uploader))
             bench.cancel();
     }
     if (bench.exporting.running() && progress(bench.exporting.stage(), bench.exporting.fraction(), "export.cancel",

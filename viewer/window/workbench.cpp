@@ -138,7 +138,7 @@ bool Workbench::poll() {
         *written ? say("Wrote " + exporting.file().string()) : say(written->error().message, true);
         news = true;
     }
-    if (const auto outcome = steps.take()) {
+    if (const auto outcome = steps.takeOutcome()) {
         stepped(*outcome);
         news = true;
     }
