@@ -14,7 +14,10 @@ namespace sgm::lower {
 namespace {
 
 constexpr int fewestAlong = 3, mostAlong = 18;  ///< lines along an axis of a face
-constexpr size_t mostFollowed = 24;             ///< lines of a face that meet surface there
+constexpr size_t mostTiles = 2048;              ///< of a face that are looked at, besides the first ones
+constexpr double leastTile = 3;                 ///< cells: as narrow as a part may show in an opening
+constexpr float steepest = 4;                   ///< slope of a field that is believed
+constexpr size_t firstFollowed = 48;            ///< lines of a face, where none of them meets surface nearby
 constexpr int stepHalvings = 8;                 ///< of a step around a crossing
 constexpr double leastFaced = 0.125;            ///< cells: the extent of a part beside which gaps are looked for
 constexpr std::array nearEnds{0.13, 0.3, 0.6};  ///< of a face, in cells
@@ -54,7 +57,15 @@ private:
     /// A line across a face.
     struct Line {
         Vec3d from;
-        double next_m = 0;  ///< where the step begins that holds the next surface
+        std::array<Vec3d, 2> half{};  ///< half extents of the tile that it is the middle of; none for further lines
+        double next_m = 0;            ///< where the step begins that holds the next surface
+    };
+
+    /// Of lines along an axis of a face.
+    struct Places {
+        std::vector<double> at;
+        size_t even = 0;       ///< the first so many, evenly spaced
+        double spacing_m = 0;  ///< of these
     };
 
     void probeFace(const FacedPart& part, int face, const eval::Tape& tape, std::vector<ThinSection>& found) {
@@ -62,64 +73,117 @@ private:
         ThinSection section{!part.cuts, part.part, face, part.scope, 0, {}};
         section.spacing_m = listLines(part.scope, face);
         keepCrossing(out, tape, part.cuts);
-        if (lines_.empty()) return;
-        findNext(out, tape, part.cuts);
-        if (lines_.empty()) return;
-        findCrossings(out, tape, section);
-        if (!section.lines.empty()) found.push_back(std::move(section));
+        const std::vector<Line> crossing = lines_;
+        lines_ = someOf(crossing);
+        const bool areAll = lines_.size() == crossing.size();
+        follow(out, tape, section);
+        if (section.lines.empty()) return;
+        if (!areAll) {
+            lines_ = crossing;
+            follow(out, tape, section);
+        }
+        found.push_back(std::move(section));
+    }
+
+    /// About so many of the grid's lines, and of those in smaller tiles, as are followed at first.
+    std::vector<Line> someOf(std::span<const Line> lines) const {
+        std::vector<Line> some;
+        for (const std::span<const Line> group : {lines.first(gridLines_), lines.subspan(gridLines_)}) {
+            const size_t stride = std::max<size_t>((group.size() + firstFollowed - 1) / firstFollowed, 1);
+            for (size_t i = 0; i < group.size(); i += stride) some.push_back(group[i]);
+        }
+        return some;
+    }
+
+    /// Leaves in the section which of the lines meet surface nearby.
+    void follow(Vec3d out, const eval::Tape& tape, ThinSection& section) {
+        section.lines.clear();
+        if (!lines_.empty()) findNext(out, tape, !section.isGap);
+        if (!lines_.empty()) findCrossings(out, tape, section);
     }
 
     /// Lines through what of a face lies in the bounds. Returns how far apart they are at most.
     double listLines(const derive::Scope& scope, int face) {
         const int axis = face / 2, across[] = {(axis + 1) % 3, (axis + 2) % 3};
         const Vec3d middle = bounds_.centre().as<double>() - scope.centre, half = bounds_.size().as<double>() * 0.5;
-        double spacing_m = 0;
+        std::array<Vec3d, 2> d, halfTile;
         lines_.clear();
         for (size_t k = 0; k < 2; ++k) {
-            const Vec3d d = scope.axes * alongAxis(across[k]), a{std::abs(d.x), std::abs(d.y), std::abs(d.z)};
+            d[k] = scope.axes * alongAxis(across[k]);
+            const Vec3d a{std::abs(d[k].x), std::abs(d[k].y), std::abs(d[k].z)};
             const double reach = scope.size[across[k]] * 0.5;
-            const double low = std::max(-reach, dot(d, middle) - dot(a, half));
-            const double high = std::min(reach, dot(d, middle) + dot(a, half));
+            const double low = std::max(-reach, dot(d[k], middle) - dot(a, half));
+            const double high = std::min(reach, dot(d[k], middle) + dot(a, half));
             if (!(low < high)) return 0;
-            spacing_m = std::max(spacing_m, listPlaces(low, high, places_[k]));
+            listPlaces(low, high, places_[k]);
+            halfTile[k] = d[k] * (0.5 * places_[k].spacing_m);
         }
         const Vec3d corner = scope.centre + scope.axes * (alongAxis(axis) * scope.size[axis] * (face % 2 ? 0.5 : -0.5));
-        for (const double v : places_[1])
-            for (const double u : places_[0])
-                lines_.push_back({corner + scope.axes * (alongAxis(across[0]) * u + alongAxis(across[1]) * v)});
-        return spacing_m;
+        const auto& [alongU, alongV] = places_;
+        for (size_t v = 0; v < alongV.at.size(); ++v)
+            for (size_t u = 0; u < alongU.at.size(); ++u) {
+                lines_.push_back({corner + d[0] * alongU.at[u] + d[1] * alongV.at[v]});
+                if (u < alongU.even && v < alongV.even) lines_.back().half = halfTile;
+            }
+        return std::max(alongU.spacing_m, alongV.spacing_m);
     }
 
-    /// Places of lines along an axis: a cell apart where that is possible, for of a cut that is larger than what it
-    /// cuts few meet it; and some near the ends, for a part may show these alone. Returns how far apart they are at
-    /// most.
-    double listPlaces(double low, double high, std::vector<double>& places) const {
+    /// Places a cell apart where that is possible, for of a cut that is larger than what it cuts few meet it; and some
+    /// near the ends, for a part may show these alone.
+    void listPlaces(double low, double high, Places& places) const {
         const double size = high - low;
         const auto count =
             static_cast<int>(std::clamp(std::ceil(size / cell_m_), double{fewestAlong}, double{mostAlong}));
-        places.clear();
+        places = {{}, static_cast<size_t>(count), size / count};
         for (int i = 0; i < count; ++i)  // off the middle, so that no line lies in a plane of symmetry
-            places.push_back(low + size * (i + 0.535) / count);
+            places.at.push_back(low + size * (i + 0.535) / count);
         for (const double cells : nearEnds)
             if (cells * cell_m_ < nearEndShare * size)
-                places.push_back(low + cells * cell_m_), places.push_back(high - cells * cell_m_);
-        return size / count;
+                places.at.push_back(low + cells * cell_m_), places.at.push_back(high - cells * cell_m_);
     }
 
     double at(int sample) const { return (firstSample + step * sample) * cell_m_; }
 
-    /// Keeps those lines that go into solid, or out of it, at the face.
+    /// Keeps those lines that go into solid, or out of it, at the face, and adds some in tiles that a line misses but
+    /// the surface may come into: a bar that runs through a house shows in an opening alone.
     void keepCrossing(Vec3d out, const eval::Tape& tape, bool intoSolid) {
-        points_.clear();
-        for (const Line& line : lines_)
-            for (const int sample : {0, 1}) points_.add((line.from + out * at(sample)).as<float>());
-        evaluate(tape);
-        size_t kept = 0;
-        for (size_t i = 0; i < lines_.size(); ++i)
-            if ((values_[2 * i] < 0) != intoSolid && (values_[2 * i + 1] < 0) == intoSolid) lines_[kept++] = lines_[i];
-        const size_t stride = (kept + mostFollowed - 1) / mostFollowed;
-        for (size_t i = 0; stride > 1 && i * stride < kept; ++i) lines_[i] = lines_[i * stride];
-        lines_.resize(stride > 1 ? (kept + stride - 1) / stride : kept);
+        const float slope = std::clamp(tape.lipschitz(), 1.0f, steepest);
+        std::vector<Line> crossing, open = lines_;
+        for (size_t looked = 0; !open.empty() && looked < mostTiles; looked += open.size()) {
+            points_.clear();
+            for (const Line& line : open)
+                for (const int sample : {0, 1}) points_.add((line.from + out * at(sample)).as<float>());
+            evaluate(tape);
+            std::vector<Line> tiles;
+            for (size_t i = 0; i < open.size(); ++i) {
+                const float before = values_[2 * i], behind = values_[2 * i + 1];
+                if ((before < 0) != intoSolid && (behind < 0) == intoSolid)
+                    crossing.push_back(open[i]);
+                else if (std::min(std::abs(before), std::abs(behind)) < slope * reachOf(open[i]))
+                    split(open[i], tiles);
+            }
+            if (looked == 0) gridLines_ = crossing.size();
+            open = std::move(tiles);
+        }
+        lines_ = std::move(crossing);
+    }
+
+    /// From a line's samples to the corners of its tile, metres.
+    float reachOf(const Line& line) const {
+        return static_cast<float>(length(line.half[0] + line.half[1]) - firstSample * cell_m_);
+    }
+
+    /// Adds the parts of a line's tile, where it is larger than what is looked for.
+    void split(const Line& line, std::vector<Line>& tiles) const {
+        static constexpr std::array whole{0.0};
+        static constexpr std::array parts{-1.0, 1.0};
+        std::array<Vec3d, 2> half = line.half;
+        std::array<std::span<const double>, 2> places{whole, whole};
+        for (size_t k = 0; k < 2; ++k)
+            if (2 * length(half[k]) > leastTile * cell_m_) half[k] = half[k] * 0.5, places[k] = parts;
+        if (places[0].size() * places[1].size() == 1) return;
+        for (const double v : places[1])
+            for (const double u : places[0]) tiles.push_back({line.from + half[0] * u + half[1] * v, half});
     }
 
     /// Keeps those that do the contrary nearby, with the step where they do.
@@ -175,8 +239,9 @@ private:
     LocalTapes tapes_;
     Box3f bounds_;
     double cell_m_;
-    std::array<std::vector<double>, 2> places_;
+    std::array<Places, 2> places_;
     std::vector<Line> lines_;
+    size_t gridLines_ = 0;  ///< of these the first, from the even places and near the ends
     PointList points_;
     std::vector<float> values_;
     SurfaceOwners owners_;

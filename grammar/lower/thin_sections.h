@@ -32,9 +32,9 @@ struct ThinSection {
 };
 
 /// Looks beyond the faces of parts that have flat ones, on lines a cell of `cell_m` metres apart (at most 576 a face,
-/// of which 24 are followed), for surface that is less than one and a half cells away. Of all these parts, or of the
-/// faces `among` thin parts where that isn't null. In order of part and face. 20 to 2,000 evaluations of a shortened
-/// tape a face, O(n log n); `threads` 0: all. Error::Cancelled.
+/// and more where it shows in places only; all are followed where one of 96 finds any), for surface that is less than
+/// one and a half cells away. Of all these parts, or of the faces `among` thin parts where that isn't null. In order of
+/// part and face. 20 to 12,000 evaluations of a shortened tape a face, O(n log n); `threads` 0: all. Error::Cancelled.
 Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& derivation, const Model& model,
                                                   const eval::Tape& tape, float cell_m, int threads, Progress* progress,
                                                   const std::vector<ThinPart>* among = nullptr);

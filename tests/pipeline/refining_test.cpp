@@ -116,6 +116,29 @@ TEST(Refining, NarrowGapsBetweenPartsAreThere) {
                24 + 5.53 * 6);
 }
 
+/// Between a frieze and eaves, where some of the lines that find the gap were three spacings apart; beside a bar that
+/// runs through a house and shows for .6 m in two niches of its court.
+TEST(Refining, GapsBesideFacesThatShowInStripsAreThere) {
+    struct Case {
+        const char* text;
+        double volume_m3;
+    };
+    const Case cases[] = {{"cube size (22m, 6.2m, 8m) + cube size (22m, .5m, 8.24m) move (0, 2.75m, 0)\n"
+                           "  + cube size (25m, .25m, 11m) move (0, 3.175m, 0)",
+                           22 * 6.15 * 8 + 22 * .24 * .5 + 25 * .25 * 11},
+                          {"cube size (34m, 5m, 30m) - cube size (1.6621m, 3m, 16.2m) move (6.256m, 0, 0)\n"
+                           "  + cube size (.14m, 3m, 29m) move (6.9511m, 0, 0) - cube size (17m, 6m, 15m)",
+                           34 * 5 * 30 - 17 * 5 * 15 - 2 * .6 * 3 * (1.6621 - .14)}};
+    for (const Case& c : cases)
+        for (const int resolution : {192, 256}) {
+            Context context{nullptr, 2};
+            const Model model = modelOf("grammar 2\nstart A -> " + std::string(c.text) + "\n", context);
+            const MeshedModel made = meshed(model, resolution, 3);
+            EXPECT_TRUE(made.missing->empty()) << c.text;
+            EXPECT_NEAR(mesh::measure(made.mesh).volume_m3 / c.volume_m3, 1, 5e-6) << resolution << ' ' << c.text;
+        }
+}
+
 /// A shell over an oblique plan, a tube and a roof that is open below, all of 10 cm, in cells of 13 to 16 cm.
 TEST(Refining, WallsOfAnyPlanAndSlopeAreThere) {
     struct Case {
