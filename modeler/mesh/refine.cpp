@@ -39,9 +39,14 @@ public:
           fits_(fits),
           firstFine_(static_cast<uint32_t>(coarse_.positions.size())) {
         const Chunk &coarse = coarse_, &fine = fine_;
-        made_.positions = coarse.positions, made_.normals = coarse.normals;
-        made_.positions.insert(made_.positions.end(), fine.positions.begin(), fine.positions.end());
-        made_.normals.insert(made_.normals.end(), fine.normals.begin(), fine.normals.end());
+        const size_t vertices = coarse.positions.size() + fine.positions.size();
+        const size_t triangles = coarse.triangles.size() + fine.triangles.size();
+        made_.positions.reserve(vertices), made_.normals.reserve(vertices);
+        made_.triangles.reserve(triangles), made_.origins.reserve(triangles), made_.labels.reserve(triangles);
+        for (const Chunk* surface : {&coarse, &fine}) {
+            made_.positions.insert(made_.positions.end(), surface->positions.begin(), surface->positions.end());
+            made_.normals.insert(made_.normals.end(), surface->normals.begin(), surface->normals.end());
+        }
         for (const ConfinedVertex& v : coarse.confined)
             if (fits.fineOf[v.vertex] == noFine) made_.confined.push_back(v);
         for (const ConfinedVertex& v : fine.confined) made_.confined.push_back({firstFine_ + v.vertex, v.place});
