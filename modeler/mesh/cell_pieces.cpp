@@ -12,6 +12,8 @@ constexpr int cornerRounds = 3;
 constexpr float settledShare = 1e-4f;    ///< of a cell, within which a corner may still move
 constexpr float leavingReach = 2;        ///< of a cell, that a corner may lie outside its cell
 constexpr float confirmShare = 0x1p-8f;  ///< of a cell times the slope: the field at a confirmed corner
+constexpr float apartShare = 0.03f;      ///< of a cell, from a corner to each of its planes
+constexpr int surfaceSteps = 3;          ///< of Newton's method
 constexpr double towardsMiddle = 1e-6;   ///< weight of the nodes' middle where planes leave a corner open
 
 /// x of A x = b by Cramer's rule, for a symmetric positive definite A.
@@ -139,6 +141,34 @@ void CellPieces::intersect(Corner& corner) const {
     corner.at = inCell(corner.cell, corner.meeting);
 }
 
+/// Whether all planes of a corner pass near its meeting: in a cell with more of them than one corner has they needn't.
+bool CellPieces::meets(const Corner& corner) const {
+    return std::all_of(corner.planes.begin(), corner.planes.end(), [&](const PiecePoint& plane) {
+        return std::abs(dot(normalized(plane.gradient), plane.at - corner.meeting)) <= apartShare * grid_->cell_m;
+    });
+}
+
+/// Corners whose planes don't meet go to the surface nearby, inside their cells: what is nearest to all planes may lie
+/// beyond it. Returns how often the field was evaluated.
+uint64_t CellPieces::moveToSurface(const BlockTapes& tapes, eval::Workspace& workspace) {
+    std::vector<Corner*> apart;
+    for (Corner& corner : corners_)
+        if (corner.meeting == corner.at && !meets(corner)) apart.push_back(&corner);
+    for (int step = 0; step < surfaceSteps && !apart.empty(); ++step) {
+        probes_.clear();
+        for (const Corner* corner : apart) probes_.add(tapes, corner->brick, corner->at);
+        probes_.evaluate(workspace);
+        for (size_t i = 0; i < apart.size(); ++i) {
+            float value;
+            const Vec3f g = probes_.point(i, value).gradient;
+            if (const float square = dot(g, g); square > 0 && std::abs(value) < std::sqrt(square) * grid_->cell_m)
+                apart[i]->at = inCell(apart[i]->cell, apart[i]->at - g * (value / square));
+            apart[i]->meeting = apart[i]->at;
+        }
+    }
+    return apart.size() * surfaceSteps;
+}
+
 /// A meeting outside the cell counts where it lies on the surface, on one of the corner's pieces. Returns at how many
 /// the field was evaluated.
 uint64_t CellPieces::confirmMeetings(const BlockTapes& tapes, eval::Workspace& workspace) {
@@ -204,6 +234,7 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
             corner.settled = corner.settled && length(corner.meeting - before) <= settledShare * grid.cell_m;
         }
     }
+    evaluations += moveToSurface(tapes, workspace);
     evaluations += confirmMeetings(tapes, workspace);
     for (const Loop& loop : loops_) {
         if (loop.corner < 0) continue;

@@ -92,6 +92,8 @@ private:
     void addSplit(Loop& loop, std::vector<LoopNode>& nodes);
     void addCorner(Loop& loop, const std::vector<LoopNode>& nodes);
     uint64_t confirmMeetings(const BlockTapes& tapes, eval::Workspace& workspace);
+    uint64_t moveToSurface(const BlockTapes& tapes, eval::Workspace& workspace);
+    bool meets(const Corner& corner) const;
     Vec3f inCell(Vec3i cell, Vec3f p) const;
     void intersect(Corner& corner) const;
     bool liesInFace(Vec3f a, Vec3f b) const;

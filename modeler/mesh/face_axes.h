@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 
 #include "modeler/mesh/piece_samples.h"
 
@@ -46,6 +47,42 @@ inline bool crossInFace(const FaceAxes& plane, const LinearField& a, const Linea
     p = a.point.at;
     p[plane.u] = static_cast<float>((ra * gb[plane.v] - rb * ga[plane.v]) / det);
     p[plane.v] = static_cast<float>((rb * ga[plane.u] - ra * gb[plane.u]) / det);
+    return true;
+}
+
+/// A point in the plane of a face, along its two axes.
+struct FacePoint {
+    double u = 0, v = 0;
+    friend FacePoint operator-(FacePoint a, FacePoint b) { return {a.u - b.u, a.v - b.v}; }
+};
+
+/// Positive where `b` points to the left of `a`.
+constexpr double turn(FacePoint a, FacePoint b) { return a.u * b.v - a.v * b.u; }
+
+/// Whether a way from point to point turns to the left and to the right.
+inline bool turnsBothWays(std::span<const FacePoint> way) {
+    bool left = false, right = false;
+    for (size_t i = 0; i + 2 < way.size(); ++i) {
+        const double t = turn(way[i + 1] - way[i], way[i + 2] - way[i + 1]);
+        left |= t > 0, right |= t < 0;
+    }
+    return left && right;
+}
+
+/// Whether a way from point to point neither meets nor touches itself. O(n²).
+inline bool isSimpleWay(std::span<const FacePoint> way) {
+    // Of the line through a and b.
+    const auto areOnOneSide = [&](FacePoint a, FacePoint b, FacePoint p, FacePoint q) {
+        return turn(b - a, p - a) * turn(b - a, q - a) > 0;
+    };
+    for (size_t i = 0; i + 2 < way.size(); ++i) {
+        const FacePoint before = way[i + 1] - way[i], after = way[i + 2] - way[i + 1];
+        if (turn(before, after) == 0 && before.u * after.u + before.v * after.v <= 0) return false;
+        for (size_t k = i + 2; k + 1 < way.size(); ++k)
+            if (!areOnOneSide(way[i], way[i + 1], way[k], way[k + 1]) &&
+                !areOnOneSide(way[k], way[k + 1], way[i], way[i + 1]))
+                return false;
+    }
     return true;
 }
 

@@ -353,10 +353,26 @@ bool FaceCreases::isMonotone(const FaceSegment& segment) const {
     return last + monotoneShare <= 1;
 }
 
+/// Whether the way over breaks that are where their pieces cross goes to and fro, as below a ledge, and stays clear of
+/// itself. At a corner that it goes around breaks had better move with the corner.
+bool FaceCreases::isZigzag(const FaceSegment& segment) const {
+    const FaceAxes axes(segment.axis);
+    std::array<FacePoint, (1 << mostSplits) + 2> way;
+    size_t n = 0;
+    const auto add = [&](Vec3f p) { way[n++] = {p[axes.u], p[axes.v]}; };
+    add(segment.ends[0].at);
+    for (const Break& at : chain_) {
+        if (at.at != at.crossing) return false;
+        add(at.at);
+    }
+    add(segment.ends[1].at);
+    return turnsBothWays(std::span(way).first(n)) && isSimpleWay(std::span(way).first(n));
+}
+
 void FaceCreases::arrange(const FaceSegment& segment) {
     const Vec3f a = segment.ends[0].at, b = segment.ends[1].at;
     const size_t n = chain_.size();
-    if (!segment.alone || (n > 1 && !isMonotone(segment))) {
+    if (!segment.alone || (n > 1 && !isMonotone(segment) && !isZigzag(segment))) {
         for (size_t k = 0; k < n; ++k)
             chain_[k].at = between(a, b, static_cast<double>(k + 1) / static_cast<double>(n + 1));
         return;

@@ -5,6 +5,7 @@
 // ends, face and tape alone decide, so that the two cells around a face, also in different blocks, find the same bits.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "modeler/mesh/face_axes.h"
@@ -80,6 +81,7 @@ private:
     static Vec3f onLine(const Gap& gap, Vec3f p);
     bool mayLieAt(const FaceSegment& segment, Vec3f p) const;
     bool isMonotone(const FaceSegment& segment) const;
+    bool isZigzag(const FaceSegment& segment) const;
     void arrange(const FaceSegment& segment);
     void separate(std::vector<FaceSegment>& segments);
 

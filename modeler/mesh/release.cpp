@@ -212,6 +212,7 @@ private:
         if (a.exchangedIn == round_ && (wIsCorner || b.exchangedIn == round_)) return true;
         if (!a.moved || !b.moved || a.exchanges >= mostExchanges) return false;
         Vec3f &p = flat_.positions[v], &q = flat_.positions[w];
+        if (wIsCorner && !isBeyond(v, w)) return false;
         ++a.exchanges;
         a.exchangedIn = round_;
         if (wIsCorner) {
@@ -226,11 +227,8 @@ private:
         return true;
     }
 
-    /// Moves a vertex between its neighbours on the crease, once; whether that was done in this round.
-    bool centre(uint32_t v) {
-        if (moveOf_[v] == none || keysOf_[moveOf_[v]].size() != 2) return false;
-        Move& move = moves_[moveOf_[v]];
-        if (move.centredIn != 0 || !move.moved) return move.centredIn == round_;
+    /// The vertices with which one that moves has an edge between two pieces.
+    std::vector<uint32_t> creaseNeighbours(uint32_t v) const {
         std::vector<std::pair<uint32_t, uint64_t>> spokes;  // neighbour and key of a triangle at it
         for (const uint32_t t : trianglesOf_[moveOf_[v]])
             for (int i = 0; i < 3; ++i)
@@ -240,6 +238,23 @@ private:
         for (size_t i = 1; i < spokes.size(); ++i)
             if (spokes[i].first == spokes[i - 1].first && spokes[i].second != spokes[i - 1].second)
                 beside.push_back(spokes[i].first);
+        return beside;
+    }
+
+    /// Whether a vertex of a crease lies on the far side of the corner that ends it.
+    bool isBeyond(uint32_t v, uint32_t corner) const {
+        const Vec3f at = flat_.positions[corner], way = flat_.positions[v] - at;
+        const std::vector<uint32_t> beside = creaseNeighbours(v);
+        return std::any_of(beside.begin(), beside.end(),
+                           [&](uint32_t w) { return w != corner && dot(flat_.positions[w] - at, way) < 0; });
+    }
+
+    /// Moves a vertex between its neighbours on the crease, once; whether that was done in this round.
+    bool centre(uint32_t v) {
+        if (moveOf_[v] == none || keysOf_[moveOf_[v]].size() != 2) return false;
+        Move& move = moves_[moveOf_[v]];
+        if (move.centredIn != 0 || !move.moved) return move.centredIn == round_;
+        const std::vector<uint32_t> beside = creaseNeighbours(v);
         if (beside.size() != 2) return false;
         flat_.positions[v] = (flat_.positions[beside[0]] + flat_.positions[beside[1]]) * 0.5f;
         move.centredIn = round_;
