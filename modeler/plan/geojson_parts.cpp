@@ -107,4 +107,17 @@ Plane planeOf(const Box2& box, bool isPlane, double farthest_m) {
     return plane;
 }
 
+std::optional<Error> tooWideForDegrees(const Plane& plane, const Box2& box, double farthest_m) {
+    const Vec2 lo = plane.at(box.lo), hi = plane.at(box.hi);
+    const double reach_m = std::max({std::abs(lo.x), std::abs(lo.z), std::abs(hi.x), std::abs(hi.z)});
+    if (!plane.fromDegrees || reach_m <= farthest_m) return {};
+    return Error{
+        Error::Kind::Input,
+        fmt::format(
+            "all its coordinates lie within 180 and 90, so they count as degrees of longitude and latitude, "
+            "and reach {:.0f} km from their middle, where {:.0f} are the most; where they are metres, write "
+            "\"crs\": {{\"type\": \"name\", \"properties\": {{\"name\": \"metres\"}}}} beside the file's \"type\"",
+            reach_m / 1000, farthest_m / 1000)};
+}
+
 }  // namespace sgm::plan

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,3 +38,6 @@ bool namesPlane(const nlohmann::json& root);
 Plane planeOf(const Box2& box, bool isPlane, double farthest_m);
 
 }  // namespace sgm::plan
+/// Error::Input where coordinates were taken for degrees and reach farther than that from their middle: they are hardly
+/// degrees.
+std::optional<Error> tooWideForDegrees(const Plane& plane, const Box2& box, double farthest_m);

@@ -125,17 +125,19 @@ void forEachRing(Features& features, Fn&& fn) {
 }
 
 /// East and north to x and −z in metres.
-void layOnPlane(Features& features, bool isPlane, double farthest_m) {
+Result<Plane> layOnPlane(Features& features, bool isPlane, double farthest_m) {
     Box2 box;
     forEachRing(features, [&](const Ring& ring) {
         for (const Vec2 p : ring.points) box.add(p);
     });
     const Plane plane = planeOf(box, isPlane, farthest_m);
+    if (auto e = tooWideForDegrees(plane, box, farthest_m)) return *e;
     features.fromDegrees = plane.fromDegrees;
     features.east = plane.origin.x, features.north = plane.origin.z;
     forEachRing(features, [&](Ring& ring) {
         for (Vec2& p : ring.points) p = plane.at(p);
     });
+    return plane;
 }
 
 }  // namespace
@@ -157,7 +159,8 @@ Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits, c
     }
     if (reading.features.list.empty())
         return Error{Error::Kind::Input, "it has no polygons; GeoJSON's Polygon and MultiPolygon are read"};
-    layOnPlane(reading.features, namesPlane(root), limits.footprint.farthest_m);
+    const auto plane = layOnPlane(reading.features, namesPlane(root), limits.footprint.farthest_m);
+    if (!plane) return plane.error();
     for (Feature& feature : reading.features.list) {
         if (cancelled(progress)) return cancelledError();
         Result<Footprint> sound = soundFootprint(feature.footprint, limits.footprint);

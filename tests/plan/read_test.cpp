@@ -119,6 +119,17 @@ TEST(GeoJson, TenThousandBuildingsTakeAMoment) {
     EXPECT_EQ(f->list.size(), 10'000u);
     for (const Feature& feature : f->list) ASSERT_TRUE(monotoneFormula(feature.footprint).ok());
     EXPECT_LT(secondsOf(CLOCK_PROCESS_CPUTIME_ID) - before, boundSeconds(1.5));
+TEST(GeoJson, PlansOfMetresTakenForDegreesAreToldAsSuch) {
+    const std::string plan = R"({"type":"Polygon","coordinates":[[[0,0],[20,0],[20,10],[0,10],[0,0]]])";
+    const auto f = readGeoJson(plan + "}");
+    ASSERT_FALSE(f.ok());
+    EXPECT_THAT(f.error().message, HasSubstr("all its coordinates lie within 180 and 90, so they count as degrees"));
+    EXPECT_THAT(f.error().message, HasSubstr(R"("crs": {"type": "name", "properties": {"name": "metres"}})"));
+    const auto metres = readGeoJson(plan + R"(,"crs": {"type": "name", "properties": {"name": "metres"}}})");
+    ASSERT_TRUE(metres.ok()) << metres.error().message;
+    EXPECT_DOUBLE_EQ(area(metres->list[0].footprint), 200);
+}
+
 }
 
 TEST(Svg, ShapesPathsAndTransforms) {
