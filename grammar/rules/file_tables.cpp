@@ -1,5 +1,9 @@
 #include "grammar/rules/file_tables.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace sgm::rules {
 namespace {
 
@@ -21,11 +25,27 @@ size_t placeOfFile(Places& known, std::vector<Pointer>& all, const syntax::Expr&
     return at->second;
 }
 
+/// One warning for the outlines that were repaired into others, with the first.
+void warnOfFaults(syntax::Diagnostics& diagnostics, const plan::Features& features, const syntax::Expr& name) {
+    const auto isFaulty = [](const plan::Feature& feature) { return !feature.fault.empty(); };
+    const auto first = std::ranges::find_if(features.list, isFaulty);
+    if (first == features.list.end()) return;
+    const auto more = std::ranges::count_if(features.list, isFaulty) - 1;
+    diagnostics.warning(
+        name.span,
+        fmt::format("\"{}\", feature {}: {}{}", name.text, first->place, first->fault,
+                    more ? fmt::format(" ({} more of its features have such faults)", more) : ""),
+        "what the rings enclose was made an outline, perhaps another one than was meant: mend the file");
+}
+
 }  // namespace
 
 std::optional<uint32_t> FileTables::readOutlines(const syntax::Expr& name) {
-    const size_t place =
-        placeOfFile(outlines_, grammar_.outlines, name, [&] { return readFile(diagnostics_, load_.outlines, name); });
+    const size_t place = placeOfFile(outlines_, grammar_.outlines, name, [&] {
+        auto read = readFile(diagnostics_, load_.outlines, name);
+        if (read) warnOfFaults(diagnostics_, *read, name);
+        return read;
+    });
     return grammar_.outlines[place] ? std::optional(static_cast<uint32_t>(place)) : std::nullopt;
 }
 

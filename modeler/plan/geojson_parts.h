@@ -30,14 +30,16 @@ struct Plane {
     bool fromDegrees = false;
     Vec2 origin, scale{1, 1};
     Vec2 at(Vec2 p) const { return {(p.x - origin.x) * scale.x, -(p.z - origin.z) * scale.z}; }
+    /// As the file has it.
+    Vec2 inFile(Vec2 p) const { return {p.x / scale.x + origin.x, origin.z - p.z / scale.z}; }
 };
 /// Whether the file says that its coordinates are on a plane (a member from before RFC 7946).
 bool namesPlane(const nlohmann::json& root);
 /// Degrees about their middle where all points may be such and `isPlane` doesn't say otherwise; else metres, about the
 /// middle where they are large.
 Plane planeOf(const Box2& box, bool isPlane, double farthest_m);
-
-}  // namespace sgm::plan
 /// Error::Input where coordinates were taken for degrees and reach farther than that from their middle: they are hardly
 /// degrees.
 std::optional<Error> tooWideForDegrees(const Plane& plane, const Box2& box, double farthest_m);
+
+}  // namespace sgm::plan

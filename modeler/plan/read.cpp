@@ -26,7 +26,30 @@ std::optional<Error> ReadBudget::addPoints(size_t count) {
     return Error{Error::Kind::Budget, fmt::format("it has more than {} points", limits_.mostPoints)};
 }
 
-Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits) {
+namespace {
+
+/// Whether two areas differ by more than lattice and slits at touching points make of one.
+bool isOtherArea(const Footprint& drawn, const Footprint& repaired) {
+    const double before_m2 = area(drawn), after_m2 = area(repaired);
+    return std::abs(before_m2 - after_m2) > 1e-3 * std::max(std::abs(before_m2), after_m2);
+}
+
+}  // namespace
+
+std::string repairText(const Fault& fault, Vec2 at) {
+    const std::string near = fmt::format(" near ({:.9g}, {:.9g})", at.x, at.z);
+    const auto side = [](size_t ring) { return ring == 0 ? "its outline" : "a hole"; };
+    if (fault.kind == FaultKind::Overlap)
+        return fmt::format("polygon {} lies in polygon {}", fault.polygon + 1, fault.otherPolygon + 1) + near;
+    if (fault.kind == FaultKind::CourtOutside)
+        return (fault.otherRing ? "a hole lies in another" : "a hole lies outside its outline") + near;
+    if (fault.polygon != fault.otherPolygon)
+        return fmt::format("polygons {} and {} cross", fault.polygon + 1, fault.otherPolygon + 1) + near;
+    if (fault.ring == fault.otherRing) return fmt::format("{} crosses itself", side(fault.ring)) + near;
+    return (fault.ring && fault.otherRing ? "two holes cross" : "a hole crosses the outline") + near;
+}
+
+Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits, std::optional<Fault>* repair) {
     Footprint clean = cleaned(drawn, limits.leastEdge_m, 1e-6);
     if (!firstFault(clean, limits)) return clean;
     const Footprint& left = clean.empty() ? drawn : clean;  // a bow of no area is cleaned away
@@ -36,6 +59,7 @@ Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits) {
                                fault->kind == FaultKind::Overlap;
     if (canBeResolved) {
         Result<Footprint> repaired = resolved(left);
+        if (repair && repaired.ok() && isOtherArea(left, *repaired)) *repair = fault;
         if (repaired.ok() ? !repaired->empty() && !firstFault(*repaired, limits)
                           : repaired.error().kind == Error::Kind::Budget)
             return repaired;

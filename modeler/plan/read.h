@@ -37,6 +37,8 @@ struct Feature {
     Footprint footprint;
     std::vector<Property> properties;
     uint64_t place = 0;  ///< number of the feature from 1 (GeoJSON), or line (SVG, OBJ)
+    std::string
+        fault{};  ///< what was wrong with the outline and made another one of it, with a place; "" where nothing
     /// The property called `word`, or null.
     const std::variant<std::string, double>* find(std::string_view word) const;
 };

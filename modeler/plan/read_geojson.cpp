@@ -163,8 +163,10 @@ Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits, c
     if (!plane) return plane.error();
     for (Feature& feature : reading.features.list) {
         if (cancelled(progress)) return cancelledError();
-        Result<Footprint> sound = soundFootprint(feature.footprint, limits.footprint);
+        std::optional<Fault> repaired;
+        Result<Footprint> sound = soundFootprint(feature.footprint, limits.footprint, &repaired);
         if (!sound) return damaged("feature", feature.place, sound.error());
+        if (repaired) feature.fault = repairText(*repaired, plane->inFile(repaired->at));
         feature.footprint = *std::move(sound);
     }
     return std::move(reading.features);

@@ -22,8 +22,12 @@ private:
 };
 
 /// The footprint of polygons as they were written: senses corrected, points on one another left out, crossings
-/// resolved. The error is what is wrong with it.
-Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits);
+/// resolved. The error is what is wrong with it. `repaired` gets the fault whose repair changed the area enclosed, as
+/// crossings do and a point that touches doesn't.
+Result<Footprint> soundFootprint(const Footprint& drawn, const Limits& limits,
+                                 std::optional<Fault>* repaired = nullptr);
+/// What `repaired` says, in the words of files: "its outline crosses itself near (4.2, 1)"; `at` as the file has it.
+std::string repairText(const Fault& fault, Vec2 at);
 
 /// Error::Input: "feature 3: …", "line 12: …".
 Error damaged(std::string_view unit, uint64_t number, std::string_view why);

@@ -89,3 +89,18 @@ TEST(OutlineProperties, WhatIsWrongIsTold) {
 
 }  // namespace
 }  // namespace sgm::testing_
+TEST(OutlineProperties, OutlinesThatBecomeOthersAreTold) {
+    rules::Loader loader;
+    loader.outlines = [](const std::string&, const syntax::Source&, std::string&) {
+        auto read =
+            plan::readGeoJson(R"({"type":"Polygon","coordinates":[[[1000,0],[1010,10],[1010,0],[1000,10],[1000,0]]]})");
+        return std::make_shared<const plan::Features>(std::move(*read));
+    };
+    syntax::Diagnostics diagnostics;
+    const auto source = std::make_shared<const syntax::Source>(
+        "test.sgm", "grammar 2\nstart S -> footprint file(\"bow.geojson\", 1) extrude 3m block\n");
+    ASSERT_TRUE(rules::load(source, operations::table(), loader, diagnostics));
+    ASSERT_EQ(diagnostics.all().size(), 1u);
+    EXPECT_EQ(diagnostics.all()[0].message, "\"bow.geojson\", feature 1: its outline crosses itself near (1005, 5)");
+}
+

@@ -90,6 +90,23 @@ TEST(GeoJson, CrossingOutlinesAreResolvedAndOtherFaultsLocated) {
     EXPECT_THAT(messageOf(""), HasSubstr("line 1"));
 }
 
+TEST(GeoJson, OutlinesThatBecomeOthersAreTold) {
+    const auto faultOf = [](const std::string& rings) {
+        const auto f = readGeoJson(polygonText(rings));
+        return f.ok() ? f->list[0].fault : f.error().message;
+    };
+    const std::string outline = "[[1000,0],[1020,0],[1020,20],[1000,20],[1000,0]]";
+    const auto withHole = [&](const std::string& hole) { return faultOf("[" + outline + ",[" + hole + "]]"); };
+    EXPECT_EQ(withHole("[1005,5],[1010,5],[1010,10],[1005,10]"), "");
+    EXPECT_EQ(withHole("[1015,5],[1030,5],[1030,10],[1015,10]"), "a hole crosses the outline near (1020, 5)");
+    EXPECT_EQ(withHole("[1030,5],[1040,5],[1040,10],[1030,10]").substr(0, 31), "a hole lies outside its outline");
+    EXPECT_EQ(withHole("[1020,5],[1010,4],[1010,10]"), "") << "a hole may touch its outline at a point";
+    EXPECT_EQ(faultOf("[[[1000,0],[1010,10],[1010,0],[1000,10]]]"), "its outline crosses itself near (1005, 5)");
+    const auto degrees = readGeoJson(polygonText("[[[13.40,52.00],[13.41,52.01],[13.41,52.00],[13.40,52.01]]]"));
+    ASSERT_TRUE(degrees.ok());
+    EXPECT_EQ(degrees->list[0].fault, "its outline crosses itself near (13.405, 52.005)") << "as the file has it";
+}
+
 TEST(GeoJson, BoundsHold) {
     ReadLimits few;
     few.mostFeatures = 1;
@@ -100,6 +117,17 @@ TEST(GeoJson, BoundsHold) {
     Progress stop;
     stop.cancel();
     EXPECT_EQ(readGeoJson(collection(featureText(square)), {}, &stop).error().kind, Error::Kind::Cancelled);
+}
+
+TEST(GeoJson, PlansOfMetresTakenForDegreesAreToldAsSuch) {
+    const std::string plan = R"({"type":"Polygon","coordinates":[[[0,0],[20,0],[20,10],[0,10],[0,0]]])";
+    const auto f = readGeoJson(plan + "}");
+    ASSERT_FALSE(f.ok());
+    EXPECT_THAT(f.error().message, HasSubstr("all its coordinates lie within 180 and 90, so they count as degrees"));
+    EXPECT_THAT(f.error().message, HasSubstr(R"("crs": {"type": "name", "properties": {"name": "metres"}})"));
+    const auto metres = readGeoJson(plan + R"(,"crs": {"type": "name", "properties": {"name": "metres"}}})");
+    ASSERT_TRUE(metres.ok()) << metres.error().message;
+    EXPECT_DOUBLE_EQ(area(metres->list[0].footprint), 200);
 }
 
 TEST(GeoJson, TenThousandBuildingsTakeAMoment) {
@@ -119,17 +147,6 @@ TEST(GeoJson, TenThousandBuildingsTakeAMoment) {
     EXPECT_EQ(f->list.size(), 10'000u);
     for (const Feature& feature : f->list) ASSERT_TRUE(monotoneFormula(feature.footprint).ok());
     EXPECT_LT(secondsOf(CLOCK_PROCESS_CPUTIME_ID) - before, boundSeconds(1.5));
-TEST(GeoJson, PlansOfMetresTakenForDegreesAreToldAsSuch) {
-    const std::string plan = R"({"type":"Polygon","coordinates":[[[0,0],[20,0],[20,10],[0,10],[0,0]]])";
-    const auto f = readGeoJson(plan + "}");
-    ASSERT_FALSE(f.ok());
-    EXPECT_THAT(f.error().message, HasSubstr("all its coordinates lie within 180 and 90, so they count as degrees"));
-    EXPECT_THAT(f.error().message, HasSubstr(R"("crs": {"type": "name", "properties": {"name": "metres"}})"));
-    const auto metres = readGeoJson(plan + R"(,"crs": {"type": "name", "properties": {"name": "metres"}}})");
-    ASSERT_TRUE(metres.ok()) << metres.error().message;
-    EXPECT_DOUBLE_EQ(area(metres->list[0].footprint), 200);
-}
-
 }
 
 TEST(Svg, ShapesPathsAndTransforms) {
