@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -13,6 +12,7 @@
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/lookup.h"
 #include "grammar/rules/make.h"
+#include "grammar/rules/measure_text.h"
 #include "modeler/core/random.h"
 
 namespace sgm::derive {
@@ -123,9 +123,9 @@ Value ofOutline(Fn fn, const Expr& expr, const Place& place) {
     if (fn == Fn::FileWord) return rules::makeWord(said->text);
     double number = said->num();
     if (said->kind == Value::Kind::Word) {  // "12", "12.5 m"
-        const char* begin = said->text.c_str();
-        const auto read = std::from_chars(begin, begin + said->text.size(), number);
-        if (read.ec != std::errc()) return otherwise;
+        const auto read = rules::readMeasure(said->text, otherwise.units[0]);
+        if (!read) return otherwise;
+        number = *read;
     }
     otherwise.n[0] = otherwise.units[0] == rules::Unit::Angle ? number * std::numbers::pi / 180 : number;
     otherwise.integer = false;

@@ -10,6 +10,7 @@
 #include "grammar/rules/declarations.h"
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/expressions.h"
+#include "grammar/rules/outline_values.h"
 #include "grammar/rules/params.h"
 #include "grammar/rules/static_analysis.h"
 #include "grammar/rules/upgrade.h"
@@ -127,6 +128,7 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     findUnusedHeights(grammar, diagnostics);
     findWaitingCycles(grammar, diagnostics);
     findEndless(grammar, diagnostics);
+    warnOfUnreadValues(ctx);
     warnOfVersion(files.asts.back(), diagnostics);
 }
 

@@ -93,6 +93,13 @@ private:
     bool all_ = false;  ///< a used file is missing, and nobody knows what it declares
 };
 
+/// A `value` of what files say of outlines.
+struct OutlineValue {
+    std::string property;
+    Unit unit = Unit::None;  ///< of what stands for it
+    SourceSpan span;
+};
+
 /// What every check takes: where its product and its messages go, and what names mean.
 struct CheckContext {
     CheckContext(Grammar& filled, syntax::Diagnostics& found, Loader load = {})
@@ -107,6 +114,7 @@ struct CheckContext {
     ParameterState params;
     MapState maps;
     TerminalSolids solids;
+    std::vector<OutlineValue> outlineValues;
 };
 
 }  // namespace sgm::rules

@@ -49,6 +49,11 @@ std::optional<uint32_t> FileTables::readOutlines(const syntax::Expr& name) {
     return grammar_.outlines[place] ? std::optional(static_cast<uint32_t>(place)) : std::nullopt;
 }
 
+std::string FileTables::outlinesName(size_t place) const {
+    const auto at = std::ranges::find_if(outlines_, [&](const auto& known) { return known.second == place; });
+    return at == outlines_.end() ? std::string() : at->first.second;
+}
+
 std::optional<uint32_t> FileTables::readImage(const syntax::Expr& name) {
     const size_t place =
         placeOfFile(images_, grammar_.images, name, [&] { return readFile(diagnostics_, load_.image, name); });

@@ -23,6 +23,8 @@ public:
 
     /// The place in Grammar::outlines of the file that `name` (a text) stands for, read here; nothing after an error.
     std::optional<uint32_t> readOutlines(const syntax::Expr& name);
+    /// The name by which the grammar calls Grammar::outlines[place]. O(files).
+    std::string outlinesName(size_t place) const;
     /// The place in Grammar::images of the picture that `name` (a text) stands for, read here; nothing after an error.
     std::optional<uint32_t> readImage(const syntax::Expr& name);
     /// The place in Grammar::meshes of the file that `name` (a text) stands for, where null stands after an error.

@@ -97,6 +97,7 @@ Typed checkProperty(CheckContext& ctx, Place& place, const Written& e, const Fun
         if (fallback.type.known && fallback.type.like.kind != Value::Kind::Number)
             return fail(ctx, otherwise.span, "what 'value' says without a file is a number", example);
         fallback.type.like.integer = false;
+        if (fallback.type.known) ctx.outlineValues.push_back({name.text, fallback.type.like.units[0], e.span});
     }
     ctx.grammar.properties.insert(name.text);
     Value text;

@@ -1,6 +1,8 @@
 // What a file says of the outlines on which shapes stand: value, word and outlines.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "modeler/plan/shapes.h"
@@ -71,6 +73,61 @@ TEST(OutlineProperties, NumbersHaveTheUnitOfWhatStandsForThem) {
     EXPECT_NEAR(std::abs(wall.scope.axes.x.z), 1, 1e-9) << "a quarter turn, in degrees in the file";
 }
 
+/// Heights of blocks over outlines that say these texts, and what the checker warns of.
+std::pair<std::vector<double>, std::string> heightsOf(const std::vector<std::string>& said, const std::string& rest) {
+    std::string features;
+    for (size_t i = 0; i < said.size(); ++i) {
+        const std::string x = std::to_string(1000 * (i + 1)), more = std::to_string(1000 * (i + 1) + 10);
+        features += fmt::format(
+            R"({}{{"type":"Feature","properties":{{"height":"{}"}},"geometry":{{"type":"Polygon","coordinates":)"
+            R"([[[{},0],[{},0],[{},10],[{},10]]]}}}})",
+            i ? "," : "", said[i], x, more, more, x);
+    }
+    rules::Loader loader;
+    loader.outlines = [&](const std::string&, const syntax::Source&, std::string&) {
+        auto read = plan::readGeoJson(R"({"type":"FeatureCollection","features":[)" + features + "]}");
+        return std::make_shared<const plan::Features>(std::move(*read));
+    };
+    const auto source = std::make_shared<const syntax::Source>(
+        "test.sgm", "grammar 2\nterminal wall\n" +
+                        (rest.empty() ? "start S -> for k in 1..outlines(\"town.geojson\") { Lot footprint "
+                                        "file(\"town.geojson\", k) }\n"
+                                        "rule Lot -> extrude (value(\"height\", 5m)) wall\n"
+                                      : rest));
+    syntax::Diagnostics diagnostics;
+    const auto grammar = rules::load(source, operations::table(), loader, diagnostics);
+    std::string told;
+    for (const auto& d : diagnostics.all()) told += syntax::render(d);
+    std::vector<double> heights_m;
+    if (!grammar) return {heights_m, told};
+    const auto d = derive::derive(grammar, {}, nullptr);
+    for (const derive::Shape& wall : shapesCalled(*d, "wall")) heights_m.push_back(wall.scope.size.y);
+    std::ranges::sort(heights_m);
+    return {heights_m, told};
+}
+
+TEST(OutlineProperties, UnitsOfFilesAreRead) {
+    const auto [heights_m, told] = heightsOf({"500 cm", "20 ft", "0.5km", "6'4\\\"", "+3", "7.5 m", "12", "900mm"}, "");
+    const std::vector<double> wanted{.9, 1.9304, 3, 5, 6.096, 7.5, 12, 500};
+    ASSERT_EQ(heights_m.size(), wanted.size());
+    for (size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(heights_m[i], wanted[i], 1e-9) << i;
+    EXPECT_EQ(told, "");
+}
+
+TEST(OutlineProperties, TextsThatAreNoNumberAreTold) {
+    for (const char* said : {"6,5", "2 storeys", "tall", "5 deg", "12 m high", "inf"}) {
+        const auto [heights_m, told] = heightsOf({"3", said, said}, "");
+        EXPECT_EQ(heights_m, (std::vector<double>{3, 5, 5})) << said;
+        EXPECT_NE(
+            told.find(fmt::format("feature 2 of \"town.geojson\" (and 1 more) says \"height\": \"{}\", which is no "
+                                  "length, so the default holds",
+                                  said)),
+            std::string::npos)
+            << told;
+    }
+    EXPECT_EQ(heightsOf({""}, "").second, "") << "nothing is said there";
+}
+
 TEST(OutlineProperties, WhatIsWrongIsTold) {
     const auto told = [](const std::string& text) {
         std::string errors;
@@ -87,8 +144,6 @@ TEST(OutlineProperties, WhatIsWrongIsTold) {
     EXPECT_NE(told("start S -> for k in 1..outlines(3) { cube }").find("write 'outlines("), std::string::npos);
 }
 
-}  // namespace
-}  // namespace sgm::testing_
 TEST(OutlineProperties, OutlinesThatBecomeOthersAreTold) {
     rules::Loader loader;
     loader.outlines = [](const std::string&, const syntax::Source&, std::string&) {
@@ -104,3 +159,5 @@ TEST(OutlineProperties, OutlinesThatBecomeOthersAreTold) {
     EXPECT_EQ(diagnostics.all()[0].message, "\"bow.geojson\", feature 1: its outline crosses itself near (1005, 5)");
 }
 
+}  // namespace
+}  // namespace sgm::testing_

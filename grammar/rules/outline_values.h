@@ -1,0 +1,12 @@
+// What `value` can't read or find of what files say of outlines.
+// Enters: a checked grammar and its files. Leaves: warnings with the file, the feature and the text.
+#pragma once
+
+#include "grammar/rules/check_context.h"
+
+namespace sgm::rules {
+
+/// Warns of texts in files that a `value` asks for and can't read, once a file and property.
+void warnOfUnreadValues(CheckContext& ctx);
+
+}  // namespace sgm::rules
