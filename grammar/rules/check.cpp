@@ -128,6 +128,7 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     findUnusedHeights(grammar, diagnostics);
     findWaitingCycles(grammar, diagnostics);
     findEndless(grammar, diagnostics);
+    findValuesOfOwnOutline(grammar, diagnostics);
     warnOfUnreadValues(ctx);
     warnOfVersion(files.asts.back(), diagnostics);
 }

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "grammar/rules/measure_text.h"
+#include "grammar/rules/traverse.h"
 
 namespace sgm::rules {
 namespace {
@@ -24,6 +26,30 @@ std::string_view nameOf(Unit unit) {
 std::string placeIn(const std::string& file, uint64_t place) {
     const bool hasLines = file.ends_with(".svg") || file.ends_with(".obj");
     return fmt::format("{} {} of \"{}\"", hasLines ? "line" : "feature", place, file);
+}
+
+bool holdsFile(const PlanExpr& plan) {
+    return plan.kind == PlanExpr::Kind::File || std::ranges::any_of(plan.parts, holdsFile);
+}
+
+const Expr* findValue(const Expr& e) {
+    const auto fn = static_cast<Fn>(e.index);
+    if (e.kind == Expr::Kind::Call && (fn == Fn::FileNumber || fn == Fn::FileWord)) return &e;
+    for (const Expr& arg : e.args)
+        if (const Expr* found = findValue(arg)) return found;
+    return nullptr;
+}
+
+/// Whether the element brings an outline of a file; `asked` is the first value behind it in the same element.
+bool bringsFile(const Element& e, const Expr*& asked) {
+    bool brings = false;
+    for (const auto* list : {&e.prefix, &e.attributes})
+        for (const Attribute& a : *list) {
+            for (const Expr& arg : a.args)
+                if (brings && !asked) asked = findValue(arg);
+            brings = brings || (a.plan && holdsFile(*a.plan));
+        }
+    return brings;
 }
 
 }  // namespace
@@ -54,6 +80,36 @@ void warnOfUnreadValues(CheckContext& ctx) {
                     ? "files say degrees as 12.5, or '12.5 deg'"
                     : "files say numbers as 6.5, with nothing behind them; word(\"…\", …) reads words");
         }
+}
+
+void findValuesOfOwnOutline(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
+    size_t files = 0;
+    const auto count = [&](const Element& e) {
+        const Expr* asked = nullptr;
+        files += bringsFile(e, asked);
+    };
+    const auto tell = [&](const Expr& asked) {
+        diagnostics.warning(asked.span,
+                            "what the file says reaches the rules below this shape, and not the shape that brings the "
+                            "outline: this is always the default",
+                            "write 'footprint file(…) Lot', and ask in 'rule Lot -> extrude (value(…)) …'");
+    };
+    const std::function<void(const Body&)> visit = [&](const Body& body) {
+        for (const auto& chain : body.siblings)
+            for (const Element& e : chain) {
+                const Expr* asked = nullptr;
+                const bool brings = bringsFile(e, asked);
+                if (asked) tell(*asked);
+                if (!brings) forEachInnerBody(e, visit);  // below, another outline is found
+            }
+    };
+    for (const Start& start : grammar.starts) {
+        visit(start.body);
+        forEachElement(start.body, count);
+    }
+    for (const Rule& rule : grammar.rules) forEachElement(rule.body, count);
+    if (files != 1) return;
+    for (const Rule& rule : grammar.rules) visit(rule.body);
 }
 
 }  // namespace sgm::rules

@@ -9,4 +9,8 @@ namespace sgm::rules {
 /// Warns of texts in files that a `value` asks for and can't read, once a file and property.
 void warnOfUnreadValues(CheckContext& ctx);
 
+/// Warns of `value` and `word` behind a `footprint file(…)` of the same shape, whose outline reaches only what stands
+/// below; where nothing above could bring another outline.
+void findValuesOfOwnOutline(const Grammar& grammar, syntax::Diagnostics& diagnostics);
+
 }  // namespace sgm::rules

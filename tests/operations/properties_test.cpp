@@ -128,6 +128,18 @@ TEST(OutlineProperties, TextsThatAreNoNumberAreTold) {
     EXPECT_EQ(heightsOf({""}, "").second, "") << "nothing is said there";
 }
 
+TEST(OutlineProperties, OfAnOutlineThatTheSameShapeBringsAreNone) {
+    const std::string warning = "and not the shape that brings the outline: this is always the default";
+    const auto toldOf = [](const std::string& rest) { return heightsOf({"12"}, rest + "\n").second; };
+    const std::string own = "footprint file(\"town.geojson\", 1) extrude (value(\"height\", 5m)) wall";
+    EXPECT_NE(toldOf("start S -> " + own).find(warning), std::string::npos);
+    EXPECT_NE(toldOf("start S -> size 4 A\nrule A -> " + own).find(warning), std::string::npos);
+    EXPECT_EQ(toldOf("start S -> footprint file(\"town.geojson\", 1) A\nrule A -> " + own), "")
+        << "another outline above may say it";
+    EXPECT_EQ(
+        toldOf("start S -> footprint file(\"town.geojson\", 1) A\nrule A -> extrude (value(\"height\", 5m)) wall"), "");
+}
+
 TEST(OutlineProperties, WhatIsWrongIsTold) {
     const auto told = [](const std::string& text) {
         std::string errors;
