@@ -8,6 +8,7 @@
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/expressions.h"
 #include "grammar/rules/functions.h"
+#include "grammar/rules/lookup.h"
 #include "grammar/rules/make.h"
 
 namespace sgm::rules {
@@ -51,8 +52,11 @@ Typed makeApplied(CheckContext& ctx, Expr::Kind kind, Fn fn, SourceSpan span, st
     if (!result.type.known) return {std::move(result.expr), Type::unknown()};
     result.type = Type::of(applyFunction(fn, samples));
     if (auto value = fold(result.expr, {})) {
-        if (auto suspect = findDoubtWithin(result.expr, {}))
+        if (auto suspect = findDoubtWithin(result.expr, {})) {
+            if ((fn == Fn::Div || fn == Fn::Rem) && versionOf(ctx.grammar, span) >= 2)
+                return fail(ctx, suspect->span, std::move(suspect->message), "divide by another number");
             ctx.diagnostics.warning(suspect->span, std::move(suspect->message), std::move(suspect->hint));
+        }
         return makeTyped(span, std::move(*value));
     }
     return result;

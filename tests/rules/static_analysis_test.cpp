@@ -170,6 +170,9 @@ TEST(Doubts, OfConstantsAreToldAtOnce) {
     EXPECT_EQ(checkedBody("start A -> cube color rgb(255, 0, 0)\n").messages(),
               "warning: 'rgb' takes shares 0 … 1, but this is 255\n");
     EXPECT_EQ(checkedBody("start A -> cube move (4 / 0, 0, 0)\n").messages(), "warning: divided by 0\n");
+    for (const char* text : {"start A -> cube size (5, 3, 3m / 0 + 2m)\n", "let q = 3m / 0\nstart A -> cube size q\n",
+                             "start A -> cube size (5 % 0)\n"})
+        EXPECT_EQ(checked(std::string("grammar 2\n") + text).messages(), "divided by 0\n") << text;
     EXPECT_EQ(checkedBody("start A -> cube move (sqrt(-1), 0, 0)\n").messages(),
               "warning: square root of a negative number: -1\n");
     EXPECT_EQ(checkedBody("param at = 3\nstart A -> cube size at\n").messages(),
