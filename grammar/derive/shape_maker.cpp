@@ -1,5 +1,7 @@
 #include "grammar/derive/shape_maker.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "modeler/core/random.h"
@@ -197,9 +199,12 @@ bool ShapeMaker::inBounds(const Element& e, const EvaluatedAttributes& attribute
     for (int i = 0; i < 3; ++i) {
         const double s = attributes.scope.size[i];
         if (s > 0 && s < 1e9 && std::abs(attributes.moved_m[i]) < 1e9) continue;
+        const Vec3d size = attributes.scope.size;
         builder_.monitor().fail(Error::Kind::Input,
                                 s > 0 ? "the shape would be larger or farther away than 1e9 metres"
-                                      : "the size of the shape isn't positive",
+                                      : fmt::format("the size of the shape isn't positive along {}: "
+                                                    "({:.6g}m, {:.6g}m, {:.6g}m)",
+                                                    "xyz"[i], size.x, size.y, size.z),
                                 attributes.sizeSpan.value_or(e.span));
         return false;
     }

@@ -55,9 +55,9 @@ TEST_F(Check, BudgetsAreExitCodeThree) {
 }
 
 TEST_F(Check, WarnsOfWhatOtherSettingsComeTo) {
-    expectWarned(
-        "param n = 2 in 0..4\nstart A -> cube : B\nrule B -> + cube size (2m / (4 - n)) at +x\n", "4:18",
-        "with n = 4: the size of the shape isn't positive in rule 'B#1' at A/B, seed 1; divided by 0: '(4 - n)' is 0");
+    expectWarned("param n = 2 in 0..4\nstart A -> cube : B\nrule B -> + cube size (2m / (4 - n)) at +x\n", "4:18",
+                 "with n = 4: the size of the shape isn't positive along x: (0m, 0m, 0m) in rule 'B#1' at A/B, seed 1; "
+                 "divided by 0: '(4 - n)' is 0");
     expectWarned("param n = 2 in 0..4\nstart A -> cube move (2m / (4 - n), 0, 0)\n", "3:23",
                  "with n = 4: divided by 0: '(4 - n)' is 0");
     expectWarned("param deep = false\nstart A -> cube : B\nrule B when deep -> + B\n", "4:21",
