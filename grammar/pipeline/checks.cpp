@@ -32,8 +32,11 @@ std::string floatersOf(const Derivation& d) {
     constexpr size_t most = 3;
     const auto shapes = d.floatingShapes();
     std::string text;
+    if (d.floating() != shapes.size())
+        text = fmt::format("{} solids in {} group{}: ", d.floating(), shapes.size(), shapes.size() == 1 ? "" : "s");
     for (size_t i = 0; i < std::min(shapes.size(), most); ++i) text += (i ? "; " : "") + derive::madeBy(d, shapes[i]);
-    if (shapes.size() > most) text += fmt::format("; and {} more", shapes.size() - most);
+    if (shapes.size() > most)
+        text += fmt::format("; and {} more{}", shapes.size() - most, d.floating() != shapes.size() ? " groups" : "");
     return text;
 }
 

@@ -30,6 +30,8 @@ TEST(Support, AFloatingStoreyIsNamedWithItsRuleAndLine) {
     EXPECT_FALSE((*verdicts)[0].passed);
     EXPECT_NE((*verdicts)[0].message.find("made by rule 'Build' (test.sgm:5)"), std::string::npos)
         << (*verdicts)[0].message;
+    EXPECT_NE((*verdicts)[0].message.find("floating is 2: 2 solids in 1 group: 'House/"), std::string::npos)
+        << (*verdicts)[0].message;
     EXPECT_TRUE((*verdicts)[1].passed) << (*verdicts)[1].message;
 }
 
