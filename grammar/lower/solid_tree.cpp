@@ -317,7 +317,11 @@ Result<SolidTree> Collector::compacted(uint32_t root) const {
         if (used[n])
             for (const uint32_t o : all_.nodes[n].operands) used[o] = true;
     for (const auto& [n, problem] : problems_)
-        if (used[n]) return Error{Error::Kind::Input, problem};
+        if (used[n])
+            return Error{Error::Kind::Input,
+                         problem +
+                             "; trees of solids (.scad, .csg.json) hold sharp unions, cuts and intersections of "
+                             "exact solids alone: leave it out, or write a mesh, such as .glb or .stl"};
 
     SolidTree tree;
     tree.bounds = all_.bounds;
