@@ -117,8 +117,9 @@ std::optional<Hint> decimalComma(const Cursor& cursor) {
     return Hint{span, quoted(span.text()) + " is no number", "a decimal point is '.': write " + quoted(written)};
 }
 
-/// What stands between or behind numbers and doesn't belong there: `10 m`, `(20; 12; 6)`, `1 to 5`.
+/// What stands between or behind numbers and doesn't belong there: `2,5`, `10 m`, `(20; 12; 6)`, `1 to 5`.
 std::optional<Hint> besideNumber(const Cursor& cursor, std::string_view message) {
+    if (auto comma = decimalComma(cursor)) return comma;
     const Token token = cursor.peek(), number = cursor.previous(1);
     const std::string_view text = cursor.text(token);
     if (number.kind != Token::Kind::Number) return {};
@@ -130,9 +131,32 @@ std::optional<Hint> besideNumber(const Cursor& cursor, std::string_view message)
                     "write " + quoted(written + std::string(text))};
     if (text == ";" && message.starts_with("expected ')'"))
         return Hint{cursor.span(token), "';' doesn't stand between numbers", "write ','"};
+    if (token.kind == Token::Kind::Word && !token.glued && message.starts_with("expected ')'") &&
+        (cursor.at(",", 1) || cursor.at(")", 1)))
+        return Hint{join(cursor.span(number), cursor.span(token)), "a number and a name stand side by side",
+                    "put '*' between them: " + quoted(written + " * " + std::string(text))};
     if (text == "to" && message.starts_with("unexpected") && cursor.at(Token::Kind::Number, 1))
         return Hint{cursor.span(token), "a range has '..' between its ends",
                     "write " + quoted(written + ".." + std::string(cursor.peekText(1)))};
+    return {};
+}
+
+/// A part of a block behind another one without '|', or a range of a parameter without 'in'.
+std::optional<Hint> withoutWord(const Cursor& cursor, std::string_view message) {
+    const Token token = cursor.peek();
+    const std::string found = quoted(cursor.text(token));
+    const bool isLabel = token.kind == Token::Kind::Word || token.kind == Token::Kind::Number;
+    if (isLabel && cursor.at(":", 1) &&
+        (message.ends_with("can't follow a shape") || message.starts_with("expected a shape")))
+        return Hint{cursor.span(token),
+                    found + (cursor.text(cursor.previous(1)) == "," ? " stands behind ','" : " can't follow a shape"),
+                    "the parts of a block are set apart by '|': write " +
+                        quoted("| " + std::string(cursor.text(token)) + ": …")};
+    if (token.kind == Token::Kind::Number && cursor.at("..", 1) && cursor.at(Token::Kind::Number, 2) &&
+        message.starts_with("unexpected"))
+        return Hint{
+            cursor.span(token), "unexpected " + found,
+            "write " + quoted("in " + std::string(cursor.text(token)) + ".." + std::string(cursor.peekText(2)))};
     return {};
 }
 
@@ -153,8 +177,8 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
     const Token token = cursor.peek();
     const std::string_view text = cursor.text(token), before = cursor.text(cursor.previous(1));
     if (token.kind == Token::Kind::Unknown) return unknownCharacter(cursor);
-    if (auto comma = decimalComma(cursor)) return comma;
     if (auto beside = besideNumber(cursor, message)) return beside;
+    if (auto without = withoutWord(cursor, message)) return without;
     if (text == "is" && message.starts_with("expected '->'"))
         return Hint{cursor.span(token), "there is no 'is'", "write '=='"};
     if (text == "+" && message.starts_with("a number has no '+'") && cursor.peekText(1).size() == 1 &&

@@ -154,7 +154,16 @@ std::string didYouMean(std::string_view word, const std::vector<std::string>& ca
     constexpr size_t longest = 64;
     if (word.empty() || word.size() > longest) return {};
     const std::string wanted = lowerCase(std::string(word));
+    // What was begun and not ended, as 'over' of 'overhang', is no slip of letters.
+    constexpr size_t leastBegun = 3;
     std::string best;
+    if (wanted.size() >= leastBegun)
+        for (const std::string& candidate : candidates)
+            if (candidate.size() > word.size() + 1 && candidate.size() <= longest &&
+                lowerCase(std::string(candidate)).starts_with(wanted) &&
+                (best.empty() || candidate.size() < best.size()))
+                best = candidate;
+    if (!best.empty()) return best;
     size_t least = std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
         if (candidate.size() > longest || candidate == word) continue;

@@ -70,7 +70,7 @@ private:
 std::string render(const Diagnostic& diagnostic);
 /// [{file, line, column, endLine, endColumn, severity, message, hint}], sorted by place.
 std::string toJson(const Diagnostics& diagnostics);
-/// The candidate nearest to `word` by edit distance (at most a third of its length), or "".
+/// The candidate that begins with `word`, else the nearest by edit distance (at most a third of its length), or "".
 std::string didYouMean(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace sgm::syntax

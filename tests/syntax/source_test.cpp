@@ -77,6 +77,8 @@ TEST(Source, DidYouMeanFindsTheNearest) {
     EXPECT_EQ(didYouMean("shpere", words), "sphere");
     EXPECT_EQ(didYouMean("wing", words), "Wing");
     EXPECT_EQ(didYouMean("facade", words), "");
+    EXPECT_EQ(didYouMean("over", {"cover", "overhang"}), "overhang") << "what was begun is no slip of a letter";
+    EXPECT_EQ(didYouMean("hip", {"ship", "hipRoof"}), "hipRoof");
     EXPECT_EQ(didYouMean("y", words), "");
     EXPECT_EQ(didYouMean("", words), "");
     EXPECT_EQ(didYouMean(std::string(1000, 's'), words), "");
