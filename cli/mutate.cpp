@@ -193,10 +193,22 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
     return pipeline::writeText(request.model.file, document::applied((*source)->text(), *edit));
 }
 
+bool isName(std::string_view text) {
+    const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    return isLetter(text[0]) &&
+           std::ranges::all_of(text, [&](char c) { return isLetter(c) || (c >= '0' && c <= '9'); });
+}
+
 Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar) {
     if ((request.pick >= 0) != !request.save.empty())
         return Error{Error::Kind::Usage,
                      "--pick NUMBER and --save NAME go together: which one, and the style it becomes"};
+    if (!request.save.empty() && !isName(request.save))
+        return Error{
+            Error::Kind::Usage,
+            fmt::format(
+                "--save '{}': the name of a style is letters, digits and '_', and no digit first, as in My_style",
+                request.save)};
     const auto style = std::find_if(grammar.styles.begin(), grammar.styles.end(),
                                     [&](const rules::Style& s) { return s.name == request.save; });
     if (style != grammar.styles.end())
@@ -207,9 +219,18 @@ Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar)
     for (const std::string& name : request.lock) {
         if (std::find(names.begin(), names.end(), name) != names.end()) continue;
         const std::string near = syntax::didYouMean(name, names);
-        return Error{Error::Kind::Usage, fmt::format("--lock {}: no parameter is called so{}", name,
-                                                     near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near))};
+        return Error{
+            Error::Kind::Usage,
+            fmt::format("--lock {}: no parameter is called so{}; {}", name,
+                        near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
+                        names.empty() ? "the grammar has none" : fmt::format("there are {}", fmt::join(names, ", ")))};
     }
+    if (request.rows * request.columns > 1 &&
+        !canVary(grammar, request.model, {request.lock.begin(), request.lock.end()}))
+        return Error{Error::Kind::Input,
+                     request.lock.empty()
+                         ? "there is no parameter to vary: declare one with a range, as 'param wide = 4m in 2m..8m'"
+                         : "there is no parameter to vary: --lock leaves none with a range or choices"};
     return Done{};
 }
 

@@ -38,6 +38,19 @@ std::vector<document::edits::NamedValue> variation(const rules::Grammar& grammar
     return values;
 }
 
+bool canVary(const rules::Grammar& grammar, const pipeline::ModelChoice& choice, const std::set<std::string>& locked) {
+    const auto options = pipeline::optionsFor(grammar, choice);
+    if (!options.ok()) return true;  // told elsewhere
+    document::Choice panel;
+    panel.start = choice.start;
+    panel.style = choice.style;
+    panel.locked = locked;
+    using Kind = document::ParamRow::Kind;
+    return std::ranges::any_of(document::paramRows(grammar, *options, panel), [](const document::ParamRow& row) {
+        return !row.locked && (row.kind == Kind::Truth || !row.choices.empty() || !row.lo.empty());
+    });
+}
+
 namespace {
 
 struct Plane {

@@ -19,6 +19,9 @@ namespace sgm::cli {
 std::vector<document::edits::NamedValue> variation(const rules::Grammar& grammar, const pipeline::ModelChoice& choice,
                                                    const std::set<std::string>& locked, double spread, uint64_t seed);
 
+/// Whether any parameter may vary: a switch, choices or a range that isn't locked.
+bool canVary(const rules::Grammar& grammar, const pipeline::ModelChoice& choice, const std::set<std::string>& locked);
+
 /// What `degenerate` returns for a mesh of a few planes.
 inline constexpr std::string_view featureless = "featureless";
 /// Why a model isn't worth a look: nothing solid; mostly debris; parts in the air; or a few bare planes. Empty for a

@@ -93,6 +93,16 @@ TEST_F(Cli, MutateSaysWhatIsWrong) {
     EXPECT_EQ(sgm("mutate " + file + " --rows 1 --cols 2 --pick 7 --save A").code, 2);
     EXPECT_EQ(sgm("mutate " + file + " --lock nothing").code, 2);
     EXPECT_NE(sgm("mutate " + file + " --lock widht").out.find("did you mean 'width'?"), std::string::npos);
+    EXPECT_NE(sgm("mutate " + file + " --lock nope").out.find("there are width"), std::string::npos);
+    const Outcome spaced = sgm("mutate " + file + " --pick 1 --save 'my style'");
+    EXPECT_EQ(spaced.code, 2);
+    EXPECT_NE(spaced.out.find("--save 'my style': the name of a style is letters"), std::string::npos) << spaced.out;
+    const Outcome locked = sgm("mutate " + file + " --lock width");
+    EXPECT_EQ(locked.code, 1);
+    EXPECT_NE(locked.out.find("there is no parameter to vary: --lock leaves none"), std::string::npos) << locked.out;
+    const Outcome fixed = sgm("mutate " + grammar("start House -> sphere size 3\n"));
+    EXPECT_EQ(fixed.code, 1);
+    EXPECT_NE(fixed.out.find("there is no parameter to vary: declare one"), std::string::npos) << fixed.out;
     const Outcome none =
         sgm("mutate " + grammar("param width = 4 in 2..8.0\nstart House -> cube & cube move (width, 0, 0)\n") +
             " --resolution 24 --rows 1 --cols 1");
