@@ -94,7 +94,9 @@ private:
 Status bakeTask(BakeOptions& options) {
     const auto share = tiles::parseShare(options.tile);
     if (!share)
-        return Error{Error::Kind::Usage, fmt::format("--tile {}: write I/N, task I of N, as 3/64", options.tile)};
+        return Error{
+            Error::Kind::Usage,
+            fmt::format("--tile {}: write I/N, task I of N, as 3/64: I is 1 … N, and N 1 … 1000000", options.tile)};
     Watch watch(options.quiet || options.missing > 0);
     Context context{watch.progress(), options.threads};
     const auto model = makeModel(options.model, context, pipeline::Objects::Apart);
@@ -137,11 +139,13 @@ Status mergeCells(const MergeOptions& options) {
         if (std::sscanf(options.at.c_str(), "%lf,%lf%n", &at->latitude_deg, &at->longitude_deg, &used) != 2 ||
             used != static_cast<int>(options.at.size()) || !(std::abs(at->latitude_deg) <= 90) ||
             !(std::abs(at->longitude_deg) <= 180))
-            return Error{Error::Kind::Usage,
-                         fmt::format("--at {}: write LATITUDE,LONGITUDE in degrees, as 52.52,13.405", options.at)};
+            return Error{Error::Kind::Usage, fmt::format("--at {}: write LATITUDE,LONGITUDE in degrees, as "
+                                                         "52.52,13.405: latitudes are -90 … 90, longitudes -180 … 180",
+                                                         options.at)};
     }
     const Status merged = tiles::merge(options.folder, at, options.verify);
     if (!merged.ok()) return merged;
+    if (!options.quiet && options.verify) fmt::print("verified: every cell is as its digest says\n");
     if (!options.quiet)
         fmt::print("wrote {0}/tileset.json\nwrote {0}/manifest.json\nwrote {0}/index.html\n", options.folder);
     if (options.format.empty()) return Done{};
