@@ -98,12 +98,23 @@ void checkRoadNumber(CheckContext& ctx, Place& place, const syntax::Setting& wri
     out.numbers.emplace_back(&row, std::move(value));
 }
 
+/// Warns of heights that are a grey picture without `as`: hills of 1 m are hardly meant.
+void warnOfUnscaledHeights(CheckContext& ctx, const Expr& height) {
+    if (height.kind != Expr::Kind::Map) return;
+    const Map& map = ctx.grammar.maps[height.index];
+    const bool isGrey = map.picture.raster && map.picture.words.empty() && map.picture.raster->numbers.empty();
+    if (isGrey && map.like.units[0] == Unit::None && map.picture.black.num() == 0 && map.picture.white.num() == 1)
+        ctx.diagnostics.warning(height.span, "the picture's heights are 0m where it is black and 1m where it is white",
+                                "say the heights behind the picture, as in 'as 0m..80m'");
+}
+
 void checkRoadSetting(CheckContext& ctx, Place& place, const syntax::Setting& written, Roads& out) {
     const std::string& name = written.name.text;
     place.enter("roads." + name);
     for (const RoadField& row : fields)
         if (row.name == name) {
             out.*row.field = checkExpression(ctx, place, written.value, row.want, fmt::format("'{}'", name));
+            if (name == "height") warnOfUnscaledHeights(ctx, *(out.*row.field));
             return;
         }
     for (const RoadField& row : points)

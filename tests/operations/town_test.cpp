@@ -195,7 +195,7 @@ TEST(Maps, AreCheckedWithALocatedError) {
 }
 
 /// A picture of 2 × 1 pixels: a black one of water's colour, and a white one.
-rules::Checked withPicture(const std::string& text) {
+rules::Checked withPicture(const std::string& text, const std::string& told = "") {
     rules::Checked result;
     result.source = std::make_shared<const syntax::Source>("test.sgm", "grammar 1\n" + text);
     rules::Loader loader;
@@ -207,7 +207,7 @@ rules::Checked withPicture(const std::string& text) {
         return raster;
     };
     result.grammar = rules::load(result.source, operations::table(), loader, result.diagnostics);
-    EXPECT_EQ(result.messages(), "");
+    EXPECT_EQ(result.messages(), told);
     return result;
 }
 
@@ -229,6 +229,16 @@ TEST(Towns, ChecksMayCountRoads) {
     const auto grammar = grammarOf("grammar 2\nstart A -> cube\ncheck A expect roads == 0 and 1 + roads > 0\n");
     ASSERT_TRUE(grammar);
     EXPECT_EQ(grammar->checks.size(), 1u);
+}
+
+TEST(Maps, APictureWithoutItsHeightsIsTold) {
+    const auto town = [](const std::string& as, const std::string& height) {
+        return "map m = \"a.png\"" + as + " over (1km, 1km)\nroads Net { pull = m height = " + height +
+               " }\nstart Town -> size (500, 10, 500) network Net { street: cube }\n";
+    };
+    withPicture(town("", "m"), "warning: the picture's heights are 0m where it is black and 1m where it is white\n");
+    withPicture(town(" as 0..80", "m"));
+    withPicture(town("", "80m * m"));
 }
 
 TEST(Maps, PicturesGiveNumbersAndWords) {
