@@ -7,11 +7,18 @@
 #include <numbers>
 
 #include "grammar/derive/shapes.h"
+#include "modeler/field/convex.h"
 
 namespace sgm::lower {
 
 inline constexpr int fewestLines = 4, mostLines = 16;  ///< along an axis across the thin one
 inline constexpr double lineReach = 1.02;              ///< of a scope's half extent, so that its own faces are crossed
+
+/// Whether a solid's faces are those of its scope.
+inline bool isBox(const derive::SolidValue& solid, const derive::Scope& scope) {
+    return solid.primitive && solid.primitive->convexParts == field::convex::cube &&
+           (solid.primitive->plan == field::PlanUse::None || scope.footprint == derive::none);
+}
 
 inline Vec3d alongAxis(int axis) { return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}; }
 

@@ -19,15 +19,23 @@
 namespace sgm::lower {
 namespace {
 
-constexpr int steps = 16;                   ///< between the samples on a line
-constexpr int halvings = 6;                 ///< of a step around a crossing
-constexpr size_t fewestCrossings = 3;       ///< of a part that isn't buried
-constexpr double leastMissing = 0.1;        ///< share of the surface that a part in the list lacks
-constexpr double mostlyFree = 0.9;          ///< of the lines through a plate meet both its faces
-constexpr double leastMissingArea = 0.01;   ///< share of the area of a plate that stands free
-constexpr double leastFacing = 0.7;         ///< cosine between a plate's faces and what isn't a torn edge
-constexpr double unsureArea = 4;            ///< more of that for each share of the lines that meet no face of the plate
-constexpr double mostUnsure = 0.25;         ///< at most
+constexpr int steps = 16;                  ///< between the samples on a line
+constexpr int halvings = 6;                ///< of a step around a crossing
+constexpr size_t fewestCrossings = 3;      ///< of a part that isn't buried
+constexpr double leastMissing = 0.1;       ///< share of the surface that a part in the list lacks
+constexpr double mostlyFree = 0.9;         ///< of the lines through a plate meet both its faces
+constexpr double leastMissingArea = 0.01;  ///< share of the area of a plate that stands free
+constexpr double leastFacing = 0.7;        ///< cosine between a plate's faces and what isn't a torn edge
+constexpr double unsureArea = 4;           ///< more of that for each share of the lines that meet no face of the plate
+constexpr double mostUnsure = 0.25;        ///< at most
+constexpr double leastOfFaces = 0.03;      ///< the same of faces that are covered in part
+constexpr double besideFace = 0.04;        ///< of half an extent: where either side of a face is looked at
+/// Points of a face that are looked at.
+struct FacePoints {
+    int mostAlong, most;
+};
+constexpr FacePoints roughly{16, 64}, closely{256, 1024};
+constexpr double leastRoughly = 0.7;        ///< share of a face that has to be free to be looked at closely
 constexpr double probed = 1.1 * lineReach;  ///< of a scope: where its part is looked for
 
 /// A thin part, and the share of its surface that the mesh lacks; 0 where it is buried.
@@ -35,9 +43,12 @@ struct Candidate {
     OriginId part = 0;
     derive::Scope scope;
     double missing = 0;
-    bool isWhole = false;  ///< told by the mesh alone
-    int plateAxis = -1;    ///< across it, where the scope is thin along one axis alone
-    double facing_m2 = 0;  ///< of a plate: what its triangles in the mesh cover, seen across it
+    bool isBox = false;      ///< its faces are those of its scope
+    bool isPresent = false;  ///< along every line through the scope, by the mesh alone
+    bool isWhole = false;    ///< told by the mesh alone
+    int plateAxis = -1;      ///< across it, where the scope is thin along one axis alone
+    /// What its triangles in the mesh cover, seen along axes of the scope.
+    std::array<double, 3> facing_m2{};
 };
 
 /// The one axis along which a scope is thin; −1 for bars and for what is thin all over.
@@ -60,17 +71,19 @@ double facesOf(const derive::Scope& scope, int axis) {
 void measureFacing(const mesh::Mesh& mesh, std::span<Candidate> parts, size_t partCount) {
     std::vector<Candidate*> of(partCount, nullptr);
     for (Candidate& c : parts)
-        if (c.plateAxis >= 0) of[c.part] = &c;
+        if (c.plateAxis >= 0 || c.isBox) of[c.part] = &c;
     const std::vector<const Vec3f*> positions = positionsOf(mesh);
     for (const mesh::Chunk& c : mesh.chunks)
         for (size_t t = 0; t < c.origins.size(); ++t) {
-            Candidate* const plate = of[c.origins[t]];
-            if (!plate) continue;
+            Candidate* const part = of[c.origins[t]];
+            if (!part) continue;
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
             const Vec3f p = *positions[corners[0]];
             const Vec3d twice = cross(*positions[corners[1]] - p, *positions[corners[2]] - p).as<double>();
-            const double across = std::abs(dot(twice, plate->scope.axes * alongAxis(plate->plateAxis)));
-            if (across > leastFacing * length(twice)) plate->facing_m2 += 0.5 * across;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double across = std::abs(dot(twice, part->scope.axes * alongAxis(axis)));
+                if (across > leastFacing * length(twice)) part->facing_m2[static_cast<size_t>(axis)] += 0.5 * across;
+            }
         }
 }
 
@@ -97,17 +110,70 @@ public:
 private:
     double missing(const Candidate& candidate, const eval::Tape& tape) {
         const OriginId part = candidate.part;
+        const double ofFaces = candidate.isBox ? missingOfFaces(candidate, tape) : 0;
+        if (candidate.isPresent) return ofFaces;
         findCrossings(candidate, tape);
-        if (inside_.empty()) return 0;
+        if (inside_.empty()) return ofFaces;
         const std::vector<OriginId>& owners = owners_.at(middles_, tape, tapes_.workspace());
         size_t met = 0, lacks = 0;
         for (size_t i = 0; i < owners.size(); ++i) {
             if (owners[i] != part) continue;
             ++met, lacks += presence_.isNear(middles_[i], part) ? 0 : 1;
         }
-        if (met < fewestCrossings) return 0;
+        if (met < fewestCrossings) return ofFaces;
         const double ofLines = static_cast<double>(lacks) / static_cast<double>(met);
-        return std::max(ofLines > leastMissing ? ofLines : 0, missingOfPlate(candidate, met));
+        return std::max(ofLines > leastMissing ? ofLines : 0,
+                        candidate.isBox ? ofFaces : missingOfPlate(candidate, met));
+    }
+
+    /// What the mesh lacks of faces across a box's thin axes that are mostly free, by area: the strips of a bar that
+    /// stand out of a pane are so near to other triangles of it that these don't tell.
+    double missingOfFaces(const Candidate& candidate, const eval::Tape& tape) {
+        double most = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!isThinAlong(candidate.scope, axis, cell_m_)) continue;
+            const double covered = candidate.facing_m2[static_cast<size_t>(axis)] / facesOf(candidate.scope, axis);
+            if (covered >= 1 - leastMissingArea || exposedShare(candidate, axis, tape, roughly) < leastRoughly)
+                continue;
+            const double exposed = exposedShare(candidate, axis, tape, closely), lacks = 1 - covered / exposed;
+            if (exposed >= mostlyFree && lacks >= (exposed < 1 ? leastOfFaces : leastMissingArea))
+                most = std::max(most, lacks);
+        }
+        return most;
+    }
+
+    /// The share of both faces across an axis that is the part's own surface.
+    double exposedShare(const Candidate& candidate, int axis, const eval::Tape& tape, const FacePoints& points) {
+        const derive::Scope& scope = candidate.scope;
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        const double apart_m = std::min(0.5 * cell_m_, scope.size[axis]);  // what crosses a bar is about as wide
+        const auto along = [&](int across, int most) {
+            return static_cast<int>(
+                std::clamp(std::ceil(scope.size[across] / apart_m), double{fewestLines}, static_cast<double>(most)));
+        };
+        const bool uIsLong = scope.size[u] > scope.size[v];
+        const int onLong = along(uIsLong ? u : v, points.mostAlong),
+                  onShort = along(uIsLong ? v : u, points.most / onLong);
+        const int alongU = uIsLong ? onLong : onShort, alongV = uIsLong ? onShort : onLong;
+        rows_.clear(), middles_.clear();
+        for (const double side : {-1.0, 1.0})
+            for (int j = 0; j < alongV; ++j)
+                for (int i = 0; i < alongU; ++i) {  // off the middle, so that no point lies in a plane of symmetry
+                    Vec3d share{};
+                    share[u] = 2 * (i + 0.535) / alongU - 1, share[v] = 2 * (j + 0.535) / alongV - 1;
+                    share[axis] = side;
+                    middles_.add(scope.point(share).as<float>());
+                    for (const double beside : {1 - besideFace, 1 + besideFace}) {
+                        share[axis] = side * beside;
+                        rows_.add(scope.point(share).as<float>());
+                    }
+                }
+        evaluate(rows_, tape);
+        const std::vector<OriginId>& owners = owners_.at(middles_, tape, tapes_.workspace());
+        size_t exposed = 0;
+        for (size_t i = 0; i < owners.size(); ++i)
+            exposed += values_[2 * i] < 0 && values_[2 * i + 1] >= 0 && owners[i] == candidate.part;
+        return static_cast<double>(exposed) / static_cast<double>(owners.size());
     }
 
     /// What the mesh lacks of a plate that stands free, by area: of a turned one it may show posts, which lie so near
@@ -117,7 +183,8 @@ private:
         int lines = 0;
         eachLine(candidate.scope, cell_m_, [&](Vec3d, int) { return ++lines, true; });
         const double free = static_cast<double>(met) / (2.0 * lines);
-        const double lacks = 1 - candidate.facing_m2 / (free * facesOf(candidate.scope, candidate.plateAxis));
+        const double lacks = 1 - candidate.facing_m2[static_cast<size_t>(candidate.plateAxis)] /
+                                     (free * facesOf(candidate.scope, candidate.plateAxis));
         const double least = std::min(leastMissingArea + unsureArea * (1 - std::min(free, 1.0)), mostUnsure);
         return free < mostlyFree || lacks < least ? 0 : lacks;
     }
@@ -176,6 +243,7 @@ std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Mod
         if (!(cellThatHolds(shape.scope) < cell)) continue;
         thin.push_back({.part = part, .scope = derive::liftedScope(derivation, model.shapeOf[part])});
         thin.back().plateAxis = plateAxis(thin.back().scope, cell);
+        thin.back().isBox = isBox(derivation.tree.solids[shape.solid], shape.scope);
     }
     return thin;
 }
@@ -184,10 +252,14 @@ std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Mod
 void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Presence& presence, float cell_m,
                 int threads, Progress* progress) {
     parallelFor(thin.size(), threads, nullptr, [&](size_t i, int) {
-        const derive::Scope& scope = thin[i].scope;
-        const int axis = thin[i].plateAxis;
-        const bool covers = axis < 0 || thin[i].facing_m2 >= (1 - leastMissingArea) * facesOf(scope, axis);
-        thin[i].isWhole = covers && presence.isWhole(scope, thin[i].part, static_cast<double>(cell_m));
+        Candidate& part = thin[i];
+        bool covers = true;
+        for (int axis = 0; axis < 3; ++axis)
+            if (part.isBox ? isThinAlong(part.scope, axis, static_cast<double>(cell_m)) : axis == part.plateAxis)
+                covers = covers && part.facing_m2[static_cast<size_t>(axis)] >=
+                                       (1 - leastMissingArea) * facesOf(part.scope, axis);
+        part.isPresent = presence.isWhole(part.scope, part.part, static_cast<double>(cell_m)) && (covers || part.isBox);
+        part.isWhole = part.isPresent && covers;
     });
     std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
     orderByPlace(std::span(thin));

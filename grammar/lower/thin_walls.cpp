@@ -299,12 +299,6 @@ derive::Scope around(derive::Scope scope, const derive::SolidValue& solid) {
     return scope;
 }
 
-/// Whether its faces are those of its scope (findThinSections).
-bool isBox(const derive::SolidValue& solid, const derive::Scope& scope) {
-    return solid.primitive && solid.primitive->convexParts == field::convex::cube &&
-           (solid.primitive->plan == field::PlanUse::None || scope.footprint == derive::none);
-}
-
 std::vector<WalledPart> walledParts(const derive::Derivation& derivation, const Model& model, double cell_m,
                                     const std::vector<ThinPart>* among) {
     std::vector<bool> isWanted(model.shapeOf.size(), !among);

@@ -116,6 +116,35 @@ TEST(Refining, NarrowGapsBetweenPartsAreThere) {
                24 + 5.53 * 6);
 }
 
+/// Strips of bars that stand out of the panes between them are nearer to what the mesh has of the bars than half a
+/// cell.
+TEST(Refining, BarsBetweenPanesStandOutOfThem) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\nterminal glass\nterminal frame\n"
+        "start Wall -> size (36, 1.6, .4) split x { { ~1.5m: Pane }* }\n"
+        "rule Pane -> split x { ~1: glass size (100%, 100%, 25%) | .08m: frame size (100%, 100%, 50%) }\n",
+        context);
+    const MeshedModel made = meshed(model, 128, 3);
+    EXPECT_TRUE(made.missing->empty());
+    EXPECT_NEAR(mesh::measure(made.mesh).volume_m3, 24 * 1.6 * (1.42 * .1 + .08 * .2), .01);
+}
+
+/// Where bars cross, and where a pane holds one, less of them is free, and nothing is missing.
+TEST(Refining, BarsAndPanesThatCrossLackNothing) {
+    const std::pair<const char*, double> cases[] = {
+        {"cube size (6, 2.4, .2) + cube size (6, 2.4, .4) move (0, 0, -.3m) + cube size (.06m, 1.2m, .12m) move (0, 0, "
+         "-.04m) + cube size (1.2m, .06m, .12m) move (0, 0, -.04m)",
+         .1},
+        {"cube size (3, 1.6, .1) + cube size (.08, 1.6, .2) move (.5m, 0, 0)", .15}};
+    for (const auto& [text, cell_m] : cases) {
+        Context context{nullptr, 2};
+        const Model model = modelOf("grammar 2\nstart W -> " + std::string(text) + "\n", context);
+        const double longest_m = double{maxComponent(model.lowered->field.bounds.size())};
+        EXPECT_TRUE(meshed(model, static_cast<int>(longest_m / cell_m), 3).missing->empty()) << text;
+    }
+}
+
 /// Between a frieze and eaves, where some of the lines that find the gap were three spacings apart; beside a bar that
 /// runs through a house and shows for .6 m in two niches of its court.
 TEST(Refining, GapsBesideFacesThatShowInStripsAreThere) {
