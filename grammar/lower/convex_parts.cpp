@@ -76,8 +76,8 @@ private:
 
     void leave(ShapeId id) {
         const auto* x = tree_.extrasOf(id);
-        if (x && !open_.back().empty() && !(x->clad.empty() && x->displace.empty() && x->relief == none))
-            note(Unlike::Plain, id);
+        if (x && !open_.back().empty() && !(x->clad.empty() && x->displace.empty())) note(Unlike::Plain, id);
+        if (x && !open_.back().empty() && x->relief != none && onHills_ == none) onHills_ = id;
         cutting_ -= tree_.shapes[id].op == Operator::Difference;
         if (open_.size() == 1) return;
         ConvexContent part = std::move(open_.back());
@@ -110,6 +110,10 @@ private:
     }
 
     Result<ConvexParts> finished(Progress* progress) {
+        if (onHills_ != none)
+            return Error{Error::Kind::Input,
+                         fmt::format("{}'{}' follows hills, which boxes and convex parts can't: take --collider mesh",
+                                     syntax::placeText(tree_.shapes[onHills_].span), tree_.path(onHills_))};
         ConvexParts parts;
         ConvexContent& all = open_.back();
         if (all.pieces.size() > mostConvexPieces) return tooMany();
@@ -151,7 +155,8 @@ private:
     const derive::ShapeTree& tree_;
     Box3d world_;
     std::vector<ConvexContent> open_;
-    int cutting_ = 0;  ///< shapes above and with the open one that are cut away
+    int cutting_ = 0;         ///< shapes above and with the open one that are cut away
+    ShapeId onHills_ = none;  ///< the first one that follows hills
     std::array<Note, unlikeTexts.size()> notes_;
 };
 

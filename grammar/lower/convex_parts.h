@@ -29,7 +29,7 @@ struct ConvexParts {
 /// roofs between their ends and morphs of solids are bounded by planes that touch them. Blends count as sharp, noise
 /// and cladding don't count; fractals and meshes from files are left out, as parts and as cuts. `notes` says so. Pieces
 /// that another one holds are left out, and so is what is thinner than a millimetre. Error::Budget beyond 20,000
-/// pieces, Error::Input where no piece is left, Error::Cancelled.
+/// pieces, Error::Input where no piece is left or some follow hills, Error::Cancelled.
 Result<ConvexParts> convexParts(const derive::Derivation& derivation, const Model& model, Progress* progress);
 
 /// The pieces as boxes along the axes of their shapes. What isn't a box becomes up to eight side by side, each of the

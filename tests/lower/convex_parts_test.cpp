@@ -181,5 +181,17 @@ TEST(ConvexParts, SaysWhereTheyDiffer) {
     EXPECT_EQ(convexParts(fractal.derivation, *fractal.model, nullptr).error().kind, Error::Kind::Input);
 }
 
+/// They were the level town's, 30 m below a hill's top.
+TEST(ConvexParts, AreRefusedOnHills) {
+    const Lowered hill(
+        "grammar 2\nmap relief = 30m * bump((0m, 0m), 160m)\n"
+        "roads Net { pull = bump((0m, 0m), 200m) spread = true height = relief slope = 50% step = 40m }\n"
+        "start Hill -> size (160, 80, 160) network Net { ground: extrude 40m cube }\n");
+    const auto parts = convexParts(hill.derivation, *hill.model, nullptr);
+    ASSERT_FALSE(parts.ok());
+    EXPECT_NE(parts.error().message.find(":4:"), std::string::npos) << parts.error().message;
+    EXPECT_NE(parts.error().message.find("take --collider mesh"), std::string::npos) << parts.error().message;
+}
+
 }  // namespace
 }  // namespace sgm::lower
