@@ -1,5 +1,7 @@
 #include "modeler/mesh/subdivide.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <iterator>
@@ -102,10 +104,11 @@ Status checkGrid(const Grid& grid) {
         const float last = grid.origin[axis] + grid.cell_m * static_cast<float>(grid.cells[axis]);
         const float farthest = std::max(std::abs(grid.origin[axis]), std::abs(last));
         // Vertices keep 1/1024 of a cell from its corners, which float32 has to be able to say.
-        if (!(grid.cell_m >= farthest * 0x1.0p-13f))
+        if (const float least = farthest * 0x1.0p-13f; !(grid.cell_m >= least))
             return Error{Error::Kind::Input,
-                         "cells are too small for single precision this far from the origin: choose larger cells or "
-                         "move the object"};
+                         fmt::format("cells of {:.3g} m are too small for single precision {:.4g} m from the origin: "
+                                     "take cells of {:.2g} m or more, or move the model nearer to the origin",
+                                     grid.cell_m, farthest, 1.05f * least)};
     }
     return Done{};
 }
