@@ -19,6 +19,7 @@ constexpr double leastTile = 3;                 ///< cells: as narrow as a part 
 constexpr float steepest = 4;                   ///< slope of a field that is believed
 constexpr size_t firstFollowed = 48;            ///< lines of a face, where none of them meets surface nearby
 constexpr int stepHalvings = 8;                 ///< of a step around a crossing
+constexpr double leastThickness = 0.0078125;    ///< cells: in seams of parts that touch the field is 0 again
 constexpr double leastFaced = 0.125;            ///< cells: the extent of a part beside which gaps are looked for
 constexpr std::array nearEnds{0.13, 0.3, 0.6};  ///< of a face, in cells
 constexpr double nearEndShare = 0.125;          ///< of a face, at most
@@ -226,7 +227,8 @@ private:
         const double thinnest_m = cell_m_ / turnOf(section.scope, section.face / 2);  // that cells hold for certain
         for (size_t i = 0; i + 1 < points_.size(); i += 2) {
             const double thickness_m = brackets[i + 1][0] - brackets[i][0];
-            if (thickness_m >= thinnest_m || owners[i] != section.part || owners[i + 1] == 0) continue;
+            if (thickness_m < leastThickness * cell_m_ || thickness_m >= thinnest_m) continue;
+            if (owners[i] != section.part || owners[i + 1] == 0) continue;
             section.lines.push_back({{{{points_[i], owners[i]}, {points_[i + 1], owners[i + 1]}}}, thickness_m});
         }
     }

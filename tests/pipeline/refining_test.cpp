@@ -145,6 +145,23 @@ TEST(Refining, BarsAndPanesThatCrossLackNothing) {
     }
 }
 
+/// In the seam of parts that touch the field is 0 again, which was a gap of a thousandth of a cell.
+TEST(Refining, SeamsOfPartsThatTouchAreNoGaps) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\nterminal wall\nterminal glass\n"
+        "start School -> footprint tee(36, 22, 10, 10) extrude 7.2m Mass\n"
+        "rule Mass -> nil + Walls + wall size (6m, 1m, 6m) move (15.5m, 6.1m, 1.5m)\n"
+        "  + wall size (5m, .25m, 3m) move (-3m, -.725m, .5m)\n"
+        "rule Walls -> faces .4m { side: Facade | rest: nil }\n"
+        "rule Facade -> split y { { ~3.6m: Ribbon }* }\n"
+        "rule Ribbon -> split y { .9m: wall | 1.6m: Band | ~1: wall }\n"
+        "rule Band -> split x { .6m: wall | ~1: glass size (100%, 100%, 25%) | .6m: wall }\n",
+        context);
+    const MeshedModel made = meshed(model, 128, 3);
+    for (const lower::ThinPart& part : *made.missing) EXPECT_GT(part.thickness_m, .001);
+}
+
 /// Between a frieze and eaves, where some of the lines that find the gap were three spacings apart; beside a bar that
 /// runs through a house and shows for .6 m in two niches of its court.
 TEST(Refining, GapsBesideFacesThatShowInStripsAreThere) {
