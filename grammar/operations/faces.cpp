@@ -104,6 +104,7 @@ public:
         plan::Footprint core = std::move(plates_.core);
         const std::vector<Face> faces = facesOf();
         noteWords(faces);
+        warnOfLostCore(faces);
         for (const Face& face : faces) {
             if (face.part && !runSide(face)) return false;
             if (!face.part)
@@ -179,17 +180,58 @@ private:
         return faces;
     }
 
-    /// Parts that no face gets are told. A party wall comes of what stands beside, which may be missing.
+    static bool has(const std::vector<Face>& faces, const Part& part) {
+        return std::any_of(faces.begin(), faces.end(), [&](const Face& face) { return face.part == &part; });
+    }
+
+    /// Parts that may have no face: a party wall comes of what stands beside, which may be missing.
+    static bool mayBeWithout(const Part& part) {
+        return isLevelWord(part.label) || part.label == "shared" || part.label == "side";
+    }
+
+    /// Parts that no face gets are told.
     void noteWords(const std::vector<Face>& faces) const {
-        for (const Part& part : faces_.parts) {
-            if (isLevelWord(part.label) || part.label == "shared" || part.label == "side") continue;
-            const bool found =
-                std::any_of(faces.begin(), faces.end(), [&](const Face& face) { return face.part == &part; });
-            context_.select(part.span, found, [&] {
-                return derive::noEdgeLeft(part.label, footprint_, "parts", "so no face gets this part",
-                                          {"top", "bottom", "shared"});
-            });
+        for (const Part& part : faces_.parts)
+            if (!mayBeWithout(part))
+                context_.select(part.span, has(faces, part), [&] {
+                    return derive::noEdgeLeft(part.label, footprint_, "parts", "so no face gets this part",
+                                              {"top", "bottom", "shared"});
+                });
+    }
+
+    /// Without 'rest' a side that no part has takes the core with it: so a block goes but for a plate. A word that no
+    /// edge has is told by itself.
+    void warnOfLostCore(const std::vector<Face>& faces) const {
+        if (findPart(faces_, "rest")) return;
+        for (const Part& part : faces_.parts)
+            if (!mayBeWithout(part) && !has(faces, part)) return;
+        std::vector<std::string_view> lost;
+        for (const Face& face : faces) {
+            if (face.part) continue;
+            const std::string_view side = wordOf(edges_[plates_.plates[face.plates[0]].edge]);
+            if (std::find(lost.begin(), lost.end(), side) == lost.end()) lost.push_back(side);
         }
+        if (lost.empty()) return;
+        context_.warn(
+            faces_.span,
+            fmt::format("no part for {}, nor for rest: all goes but the parts that are written", fmt::join(lost, ", ")),
+            "write 'rest: nil' if that is meant, or give 'rest' a shape of its own, which reaches to the "
+            "sides without a part");
+    }
+
+    /// Where the side of an edge looks.
+    static std::string_view wordOf(const PlacedEdge& edge) {
+        switch (plan::facingOf(edge.normal())) {
+            case plan::Facing::Front:
+                return "front";
+            case plan::Facing::Back:
+                return "back";
+            case plan::Facing::Left:
+                return "left";
+            case plan::Facing::Right:
+                break;
+        }
+        return "right";
     }
 
     /// The last face of a ring may go on into its first one.
@@ -287,7 +329,8 @@ constinit const Operation faces{
     .doc =
         "Takes a block apart: plates along the edges of its footprint, called side, front (+z), back, left, right, "
         "court, shared (where another shape stood before most of it when the generation began) or by a tag; "
-        "top and bottom plates; and rest, the core. The first word that fits an edge wins; in a plate x runs from left "
+        "top and bottom plates; and rest, the core, which reaches to sides without a part. What has no part goes. The "
+        "first word that fits an edge wins; in a plate x runs from left "
         "to right seen "
         "from outside and z outward. With 'smooth', sides of one part that bend by no more than the angle are one "
         "face, "

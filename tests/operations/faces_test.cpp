@@ -175,6 +175,19 @@ TEST(Faces, SharedSidesAreThoseThatAnotherShapeStandsBefore) {
     EXPECT_EQ(count(derived("grammar 1\n" + house + beside + "7m) at +x\n"), "party"), 1);
 }
 
+TEST(Faces, ACoreThatGoesUnsaidIsTold) {
+    const auto told = [](const std::string& parts) {
+        return warningsOf(derived(block("rect(10, 6)", "faces .4m { " + parts + " }")), true);
+    };
+    EXPECT_EQ(told("front: front"),
+              "4:14 no part for back, right, left, nor for rest: all goes but the parts that are written; write 'rest: "
+              "nil' if that is meant, or give 'rest' a shape of its own, which reaches to the sides without a part\n");
+    EXPECT_NE(told("top: deck"), "");
+    for (const char* parts : {"front: front | rest: nil", "front: front | rest: core", "side: wall",
+                              "front: front | back: wall | left: wall | right: wall"})
+        EXPECT_EQ(told(parts), "") << parts;
+}
+
 TEST(Faces, MessagesNameTheirPlace) {
     syntax::Diagnostics diagnostics;
     const auto source = std::make_shared<const syntax::Source>(
