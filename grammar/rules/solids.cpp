@@ -150,6 +150,17 @@ Expr checkPrimitiveArgument(CheckContext& ctx, Place& place, const Written& e, c
     return expr;
 }
 
+/// The eaves of curved roofs are as thick as the board there.
+void warnOfThinEaves(CheckContext& ctx, const Solid& solid) {
+    if (solid.primitive->name != "domeRoof" && solid.primitive->name != "bellRoof") return;
+    const auto overhang = fold(solid.args[0], ctx.params.defaults), fascia = fold(solid.args[1], ctx.params.defaults);
+    if (overhang && fascia && overhang->num() > 0 && fascia->num() <= 0)
+        ctx.diagnostics.warning(
+            solid.args[0].span,
+            fmt::format("this overhang does nothing: the eaves of a {} have no thickness", solid.primitive->name),
+            "give them a board, such as 'fascia: .2m'");
+}
+
 Solid checkPrimitive(CheckContext& ctx, Place& place, const Written& e, const field::Primitive& row) {
     Solid solid = solidOfRow(e.span, row);
     std::vector<bool> given(row.parameters.size(), false);
@@ -187,6 +198,7 @@ Solid checkPrimitive(CheckContext& ctx, Place& place, const Written& e, const fi
         if (row.parameters[i].kind == ParameterKind::File)
             ctx.diagnostics.error(e.span, fmt::format("'{}' takes the name of a file", row.name),
                                   fmt::format("write '{}(\"statue.obj\")'", row.name));
+    warnOfThinEaves(ctx, solid);
     return solid;
 }
 

@@ -60,7 +60,14 @@ inline constexpr PrimitiveParameter flatParameters[] = {
     {"slab", Kind::Length, .3, .001, 20, "thickness of the roof"},
     {"parapet", Kind::Length, .9, 0, 20, "height of the parapet above it; 0 for none"},
     thickness("thickness", .25, .001, 20, "of the parapet")};
-inline constexpr PrimitiveParameter pyramidRoofParameters[] = {overhang, fascia};
+inline constexpr PrimitiveParameter pyramidRoofParameters[] = {
+    {"overhang", Kind::Length, 0, 0, 20,
+     "metres that the eaves of its flattest slope stand out; steeper ones come down as far and stand out less"},
+    fascia};
+inline constexpr PrimitiveParameter curvedRoofParameters[] = {
+    {"overhang", Kind::Length, 0, 0, 20,
+     "metres that the board at the eaves stands out; nothing without a fascia, for the curve comes to nothing there"},
+    fascia};
 
 inline constexpr double noPoint = 1000;  // metres: a point of a moulding that was left out
 inline constexpr PrimitiveParameter point(std::string_view name, std::string_view doc) {

@@ -365,9 +365,9 @@ constexpr Primitive table[] = {
      "Planes from every edge to the point at the scope's top over the centre of mass; where an edge looks away from "
      "it, planes of one pitch.",
      pyramidRoofParameters, solids::pyramidRoof, true, apex, false, nullptr, PlanUse::Fills},
-    curved({"domeRoof", "Quarter ellipses over every edge: a dome as high as the scope.", pyramidRoofParameters,
+    curved({"domeRoof", "Quarter ellipses over every edge: a dome as high as the scope.", curvedRoofParameters,
             solids::domeRoof, true, apex, false, nullptr, PlanUse::Fills}),
-    curved({"bellRoof", "As the dome, with a hollow foot.", pyramidRoofParameters, solids::bellRoof, true, apex, false,
+    curved({"bellRoof", "As the dome, with a hollow foot.", curvedRoofParameters, solids::bellRoof, true, apex, false,
             nullptr, PlanUse::Fills}),
     {"halfspace",
      "Everything below the scope's middle plane y = 0. Unbounded: may only cut.",

@@ -49,6 +49,12 @@ Quantity wholeRun(const PlanField& plan, const RoofFoot& foot, Quantity run) {
 /// Height above the fascia.
 NodeRef aboveFascia(const RoofFoot& foot, const Foot& at) { return at.hasFascia ? at.up - foot.fascia.node : at.up; }
 
+/// Curved roofs come to nothing where they meet the eaves' height: only the board at the eaves can stand out.
+RoofFoot ofCurved(RoofFoot foot, Graph& graph) {
+    if (foot.fascia.value <= 0) foot.overhang = fixed(graph, 0);
+    return foot;
+}
+
 /// The walls of a curved roof, moved out to the overhang, which begins at the eaves' height.
 NodeRef walls(const PlanField& plan, const RoofFoot& foot) { return plan.outside() - foot.overhang.node; }
 
@@ -110,17 +116,20 @@ Field flatRoof(const PlanField& plan, const RoofFoot& foot, Quantity slab, Quant
 
 // In shares (u, v) of run and height: the quarter of a circle about (run, 0). The gradient is at most 1 over the least
 // scale.
-Field domeRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Quantity run) {
+Field domeRoof(const PlanField& plan, const RoofFoot& given, Quantity height, Quantity run) {
+    const RoofFoot foot = ofCurved(given, plan.graph());
     const Quantity r = wholeRun(plan, foot, run);
     const Foot at = footOf(plan, foot, {});
     const NodeRef u = shareLeft(plan, r), v = max(aboveFascia(foot, at), 0.0f) / height.node;
-    const NodeRef round = (sqrt(squareWithLabel(u) + square(v)) - 1.0f) * min(r.node, height.node);
+    NodeRef round = (sqrt(squareWithLabel(u) + square(v)) - 1.0f) * min(r.node, height.node);
+    if (foot.overhang.value > 0) round = min(round, aboveFascia(foot, at));  // the board, beyond the circle
     return onFoot(plan, foot, at, max(walls(plan, foot), round), height.value + foot.fascia.value);
 }
 
 // Two quarters of circles of half the run and half the height: outside of the one about the foot, inside of the one
 // about the top.
-Field bellRoof(const PlanField& plan, const RoofFoot& foot, Quantity height, Quantity run) {
+Field bellRoof(const PlanField& plan, const RoofFoot& given, Quantity height, Quantity run) {
+    const RoofFoot foot = ofCurved(given, plan.graph());
     const Quantity r = wholeRun(plan, foot, run);
     const Foot at = footOf(plan, foot, {});
     const NodeRef left = shareLeft(plan, r), v = aboveFascia(foot, at) / height.node;

@@ -233,6 +233,29 @@ std::vector<std::pair<std::string, std::function<field::Field(Built&)>>> roofs()
     };
 }
 
+/// Over a square of 8 m: the board reaches to the overhang on all sides, as high as it is; without one nothing does.
+TEST(Solids, CurvedRoofsStandOutByTheirBoard) {
+    using Make = std::function<field::Field(Built&, double)>;
+    const Make dome = [](Built& b, double fascia_m) {
+        return field::domeRoof(b.plan, b.foot(0, 1, fascia_m), b.number(4), b.number(0));
+    };
+    const Make bell = [](Built& b, double fascia_m) {
+        return field::bellRoof(b.plan, b.foot(0, 1, fascia_m), b.number(4), b.number(0));
+    };
+    for (const Make& make : {dome, bell})
+        for (const double fascia_m : {0.0, .3}) {
+            const auto b = built(*rectangle(8, 8));
+            b->field() = make(*b, fascia_m);
+            field::test::Probe probe(b->scene.graph, b->field());
+            EXPECT_EQ(probe({4.9f, .1f, 0}) < 0, fascia_m > 0);
+            EXPECT_EQ(probe({-4.9f, .25f, -4.9f}) < 0, fascia_m > 0);
+            EXPECT_GT(probe({4.9f, 0, 0}), fascia_m > 0 ? -1 : .5f) << "a sheet without thickness";
+            EXPECT_GT(probe({4.9f, .35f, 0}), 0);
+            EXPECT_GT(probe({5.1f, .1f, 0}), 0);
+            EXPECT_LT(probe({0, static_cast<float>(3.9 + fascia_m), 0}), 0);
+        }
+}
+
 TEST(Solids, NoRoofOverRandomPlansFails) {
     uint64_t key = 0;
     for (const auto& [name, make] : roofs())

@@ -28,6 +28,16 @@ TEST(Told, WhatANameMeansAlready) {
               "3:16 'step' names a parameter (line 2); give the value another name\n");
 }
 
+TEST(Told, AnOverhangOfNoThickness) {
+    const auto roof = [](const std::string& written) { return told("start A -> " + written + " size (9, 4, 9)\n"); };
+    EXPECT_EQ(roof("domeRoof(overhang: 1m)"),
+              "2:31 this overhang does nothing: the eaves of a domeRoof have no thickness; give them a board, such as "
+              "'fascia: .2m'\n");
+    EXPECT_NE(roof("bellRoof(1m, 0m)"), "");
+    for (const char* fine : {"bellRoof(1m, .2m)", "domeRoof(overhang: 0m)", "domeRoof", "pyramidRoof(overhang: 1m)"})
+        EXPECT_EQ(roof(fine), "") << fine;
+}
+
 TEST(Told, ASymbolBehindAShape) {
     EXPECT_EQ(told("start A -> cube size 3 B\nrule B -> cube\n"),
               "2:24 'B' can't follow a shape; write ': B' to call this shape so, or ', B' for one beside it\n");
