@@ -80,6 +80,7 @@ private:
     void findSpans();
     bool holdsBall(const Span& span) const;
     void measureFloors();
+    bool isLow(const Span& span) const;
     bool canStand(const Span& span) const;
     void linkNodes();
     uint32_t beside(const Span& span, size_t side, float most_m) const;
@@ -161,11 +162,19 @@ void Walk::measureFloors() {
     cave_.headroom = {headrooms.front(), headrooms[headrooms.size() / 2], headrooms.back()};
 }
 
+/// Whether the roof is lower than the agent: heights are known to far less than a voxel, clearances aren't.
+bool Walk::isLow(const Span& span) const {
+    constexpr float rounding = 0.05f;  // of a voxel
+    if (!span.hasRoof) return false;
+    const float headroom_m = air_.roof_m[span.first + span.count - 1] - span.floor_m;
+    return headroom_m < height_m_ - rounding * air_.voxel_m;
+}
+
 /// Whether the agent can stand on the span. Its ball must be clear of rock from some height up to the agent's own; the
 /// ball rests there or hangs at most a step higher. So rock beside it that is no higher than a step is stepped upon,
 /// and stairs are one walk.
 bool Walk::canStand(const Span& span) const {
-    if (!gentle(span) || spaceOf_[span.first] == nowhere) return false;
+    if (!gentle(span) || spaceOf_[span.first] == nowhere || isLow(span)) return false;
     const float least = radius_m_ - half_m_;
     const float resting = radius_m_ / span.cosine + 2 * half_m_;  // a ball on a slope stands higher
     const float reach = std::max(resting, radius_m_ + static_cast<float>(cave_.agent.step_m()));

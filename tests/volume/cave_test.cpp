@@ -145,6 +145,17 @@ TEST(CaveReport, ATallAgentIsStoppedByALowPassage) {
     EXPECT_TRUE(low.passages[0].passable) << "a passage is judged by the agent's radius";
 }
 
+/// A tunnel through the block, lower than the agent by less than the cells show of clearances.
+TEST(CaveReport, FloorUnderARoofLowerThanTheAgentIsntWalkable) {
+    const auto walkable = [](float height_m, float cell_m) {
+        return Dig({{{0, 0, 0}, {13, height_m / 2, 2}}}, cell_m, {.radius_m = 0.3, .height_m = 1.8}).cave.walkable_m2;
+    };
+    for (const float cell_m : {0.2f, 0.11f}) {
+        for (const float height_m : {1.5f, 1.7f, 1.77f}) EXPECT_EQ(walkable(height_m, cell_m), 0) << height_m;
+        for (const float height_m : {1.8f, 1.83f, 2.0f}) EXPECT_GT(walkable(height_m, cell_m), 70) << height_m;
+    }
+}
+
 TEST(CaveReport, SpacesPocketsAndEntrances) {
     // A room with a tunnel out of the block at +x, a closed room, and a hole too small for the agent.
     const Cave cave = Dig({{{6, 0, 0}, {3, 1.5f, 2}},
