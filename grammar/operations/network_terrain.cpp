@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "modeler/town/grow.h"
+
 namespace sgm::operations {
 
 using derive::ReliefLayer;
@@ -103,12 +105,24 @@ void NetworkTerrain::grade(const town::RoadGraph& graph, const town::RoadParamet
 
 std::string NetworkTerrain::obstacle(const town::RoadParameters& parameters, const town::Land& land) const {
     if (!terrain_) return {};
-    const double slope = terrain_->leastRise(parameters.from.value_or(strongest(parameters, land)), parameters.step_m);
-    if (slope <= parameters.slope) return {};
+    const Vec2 from = parameters.from.value_or(strongest(parameters, land));
+    const double slope = terrain_->leastRise(from, parameters.step_m);
+    if (slope > parameters.slope)
+        return fmt::format(
+            "no road grows here: the ground rises by at least {:.0f}% in all directions, more than 'slope', "
+            "{:.0f}%",
+            100 * slope, 100 * parameters.slope);
+    // Some ways are gentle enough, but roads begin along an axis and turn by less than to there.
+    town::Land level = land;
+    level.height = nullptr;
+    town::RoadParameters few = parameters;
+    few.limit = 4;
+    const auto grown = town::growRoads(few, level, context_.progress());
+    if (grown.ok() ? grown->edges().empty() : grown.error().kind != Error::Kind::Budget) return {};
     return fmt::format(
-        "no road grows here: the ground rises by at least {:.0f}% in all directions, more than 'slope', "
-        "{:.0f}%",
-        100 * slope, 100 * parameters.slope);
+        "no road grows here: at ({:.0f}, {:.0f}), where roads begin, the ground rises by more than 'slope', {:.0f}%, "
+        "along all ways that they try",
+        from.x, from.z, 100 * parameters.slope);
 }
 
 uint32_t NetworkTerrain::reliefOf(const std::string& layer) {

@@ -21,7 +21,7 @@ public:
     bool survey(const town::RoadParameters& parameters, town::Land& land);
     /// Heights for the roads; warns of those that stay too steep.
     void grade(const town::RoadGraph& graph, const town::RoadParameters& parameters);
-    /// Why nothing grew, and what to do, where the ground is to blame; "" where it isn't.
+    /// Why nothing grew, where the ground is to blame; "" where it isn't. Tries roads on level ground.
     std::string obstacle(const town::RoadParameters& parameters, const town::Land& land) const;
     /// The relief of a part of the network, or none on level ground.
     uint32_t reliefOf(const std::string& layer);

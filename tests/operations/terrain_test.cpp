@@ -221,6 +221,14 @@ TEST(Hills, SayWhatIsWrongWithTheirHeights) {
     EXPECT_NE(warningsOf(dry(town("height = 3m", ground))).find("equally high everywhere"), std::string::npos);
     EXPECT_NE(warningsOf(dry(town("height = 90m * bump((-40m, -30m), 90m)", ground))).find("more than 'slope', 12%"),
               std::string::npos);
+    // Along the level lines the ground is gentle, but no road begins that way.
+    const std::string steep = warningsOf(
+        "grammar 2\nmap relief = 40m * bump((-90m, 10m), 250m)\nmap dens = bump((0m, 0m), 260m)\n"
+        "roads Net { pull = dens spread = dens > .2 height = relief slope = 15% highway = 8m street = 5m step = 40m "
+        "block = 40m junction = 3 snap = 12m }\n"
+        "start Town -> size (300, 60, 300) network Net { street: extrude 40m cube | highway: extrude 40m cube }\n");
+    EXPECT_NE(steep.find("where roads begin, the ground rises by more than 'slope', 15%"), std::string::npos) << steep;
+    EXPECT_NE(steep.find("raise 'slope'"), std::string::npos) << steep;
     const auto far = tryDerive(town("height = if(here.x > 100m, 1e12m, 0m)", ground));
     ASSERT_FALSE(far.ok());
     EXPECT_NE(far.error().message.find("test.sgm:5"), std::string::npos) << far.error().message;
