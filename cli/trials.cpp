@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "grammar/derive/support.h"
 #include "grammar/pipeline/missing.h"
 #include "grammar/pipeline/scene.h"
 #include "grammar/rules/params.h"
@@ -20,6 +21,7 @@ struct Setting {
     derive::Options options;
     std::string words;    ///< "with floors = 20"; empty for a start as it is
     bool isMain = false;  ///< what `sgm build` makes without options
+    bool isEnd = false;   ///< one end of a range, of which less is asked
 };
 
 /// Where an error says it is, if that is in one of the grammar's files.
@@ -103,6 +105,7 @@ private:
                 for (rules::Value& value : endsOf(grammar_->params[p])) {
                     Setting setting{optionsOf(s), {}, false};
                     if (setting.options.params[p] == value) continue;
+                    setting.isEnd = grammar_->params[p].choices.empty() && value.kind != rules::Value::Kind::Bool;
                     setting.words = fmt::format("with {} = {}", grammar_->params[p].name, rules::toText(value));
                     setting.options.params[p] = std::move(value);
                     list.push_back(std::move(setting));
@@ -143,6 +146,7 @@ private:
         for (const syntax::Diagnostic& d : found.all())
             if (warned_.insert({d.span.source, d.span.begin, d.span.end}).second)
                 diagnostics_.warning(d.span, prefixed(setting.words, d.message), d.hint);
+        lookAtBoxes(*derivation, setting);
         Context context{progress_};
         const bool placesObjects = !derivation->objects.empty();
         if (const Status s = pipeline::tryObjects(*derivation, options.budget, context); !s.ok()) return s;
@@ -153,6 +157,22 @@ private:
         if (placesObjects && model->lowered->field.bounds.empty()) return Done{};
         if (const Status s = placesObjects ? Done{} : hasSurface(*model); !s.ok()) return s;
         return checksMesh ? lookAtMesh(*model) : Status(Done{});
+    }
+
+    /// What hangs in the air at another setting, by boxes, which costs no mesh. Nothing where the start as it is has
+    /// some.
+    void lookAtBoxes(const derive::Derivation& derivation, const Setting& setting) {
+        const uint32_t start = setting.options.start;
+        if (setting.words.empty() && derivation.floating() == 0) standing_.insert(start);
+        if (setting.words.empty() || setting.isEnd || !standing_.contains(start)) return;
+        const std::vector<derive::ShapeId> floating = derivation.floatingShapes();
+        if (floating.empty()) return;
+        const syntax::SourceSpan span = derivation.tree.shapes[floating[0]].span;
+        if (!said_.insert(keyOf(span, "floats")).second) return;
+        const std::string more =
+            floating.size() > 1 ? fmt::format(" and {} more float", floating.size() - 1) : " floats";
+        diagnostics_.warning(span, prefixed(setting.words, derive::madeBy(derivation, floating[0]) + more),
+                             "let it touch what stands on the ground");
     }
 
     /// What `sgm build` would tell of the mesh at the cells that are asked for: what floats, what is too thin.
@@ -210,6 +230,7 @@ private:
     Progress* progress_;
     syntax::Diagnostics& diagnostics_;
     std::vector<pipeline::MeshWarning> ofCells_;
+    std::set<uint32_t> standing_;                                             ///< starts in which nothing floats
     derive::Selections selections_;                                           ///< of all starts so far
     std::set<Key> said_;                                                      ///< errors
     std::set<std::tuple<const syntax::Source*, uint32_t, uint32_t>> warned_;  ///< places: one warning each

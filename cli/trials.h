@@ -29,9 +29,9 @@ struct Trials {
 
 /// Derives and lowers the first start as it is, whose problems are those of `sgm build`: errors are errors. Then every
 /// other start, every style and `derive` way, and every parameter of the main file at the ends of its range or at each
-/// choice, one at a time: what fails there is a warning that names the setting. What floats in the mesh of the first
-/// start is a warning too, unless these cells lack parts: then all that is told of the mesh is
-/// returned. Error::Cancelled.
+/// choice, one at a time: what fails there is a warning that names the setting; so is, at a choice, a style or a way,
+/// what floats by its boxes where nothing of the start as it is does. What floats in the mesh of the first start is a
+/// warning too, unless these cells lack parts: then all that is told of the mesh is returned. Error::Cancelled.
 Result<Trials> tryModels(std::shared_ptr<const rules::Grammar> grammar, const TrialOptions& options, Progress* progress,
                          syntax::Diagnostics& diagnostics);
 

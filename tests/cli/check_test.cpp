@@ -54,6 +54,16 @@ TEST_F(Check, BudgetsAreExitCodeThree) {
     EXPECT_EQ(checked("start A -> cube : B\nrule B repeat 1000000000 -> + cube at +x : B\n").code, 3);
 }
 
+TEST_F(Check, WarnsOfWhatFloatsAtOtherSettings) {
+    const std::string rules =
+        "start H -> cube size (5, 3, 5) : Body\nrule Body when kind == a -> + cube size (1, 2, 1) at +y\n"
+        "rule Body -> + cube size (1, 2, 1) move (0, 6m, 0)\n";
+    expectWarned("param kind = a of a, b\n" + rules, "5:14", "with kind = b: 'H/Body/cube', made by rule 'Body#2'");
+    const Outcome hangs = checked("param kind = b of a, b\n" + rules);
+    EXPECT_EQ(hangs.out.find("with kind"), std::string::npos)
+        << "what floats anyway is told of the mesh: " << hangs.out;
+}
+
 TEST_F(Check, WarnsOfWhatOtherSettingsComeTo) {
     expectWarned("param n = 2 in 0..4\nstart A -> cube : B\nrule B -> + cube size (2m / (4 - n)) at +x\n", "4:18",
                  "with n = 4: the size of the shape isn't positive along x: (0m, 0m, 0m) in rule 'B#1' at A/B, seed 1; "
