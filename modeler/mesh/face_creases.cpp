@@ -31,6 +31,33 @@ PiecePoint onSurface(const LinearField& field) {
     return point;
 }
 
+/// Whether each break lies farther along the segment than the one before: then the way over them can't cross itself.
+bool isMonotone(const FaceSegment& segment, std::span<const Break> breaks) {
+    const Vec3d from = segment.ends[0].at.as<double>(), way = segment.ends[1].at.as<double>() - from;
+    double last = 0;
+    for (const Break& at : breaks) {
+        const double share = dot(at.at.as<double>() - from, way) / dot(way, way);
+        if (!(share >= last + monotoneShare)) return false;
+        last = share;
+    }
+    return last + monotoneShare <= 1;
+}
+
+/// Whether the way over breaks that are where their pieces cross goes to and fro, as below a ledge, and stays clear of
+/// itself. At a corner that it goes around breaks had better move with the corner.
+bool isZigzag(const FaceSegment& segment, std::span<const Break> breaks) {
+    const FaceAxes axes(segment.axis);
+    std::vector<FacePoint> way;
+    const auto add = [&](Vec3f p) { way.push_back({p[axes.u], p[axes.v]}); };
+    add(segment.ends[0].at);
+    for (const Break& at : breaks) {
+        if (at.at != at.crossing) return false;
+        add(at.at);
+    }
+    add(segment.ends[1].at);
+    return turnsBothWays(way) && isSimpleWay(way);
+}
+
 }  // namespace
 
 uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace,
@@ -341,38 +368,10 @@ void FaceCreases::separate(std::vector<FaceSegment>& segments) {
     }
 }
 
-/// Whether each break lies farther along the segment than the one before: then the way over them can't cross itself.
-bool FaceCreases::isMonotone(const FaceSegment& segment) const {
-    const Vec3d from = segment.ends[0].at.as<double>(), way = segment.ends[1].at.as<double>() - from;
-    double last = 0;
-    for (const Break& at : chain_) {
-        const double share = dot(at.at.as<double>() - from, way) / dot(way, way);
-        if (!(share >= last + monotoneShare)) return false;
-        last = share;
-    }
-    return last + monotoneShare <= 1;
-}
-
-/// Whether the way over breaks that are where their pieces cross goes to and fro, as below a ledge, and stays clear of
-/// itself. At a corner that it goes around breaks had better move with the corner.
-bool FaceCreases::isZigzag(const FaceSegment& segment) const {
-    const FaceAxes axes(segment.axis);
-    std::array<FacePoint, (1 << mostSplits) + 2> way;
-    size_t n = 0;
-    const auto add = [&](Vec3f p) { way[n++] = {p[axes.u], p[axes.v]}; };
-    add(segment.ends[0].at);
-    for (const Break& at : chain_) {
-        if (at.at != at.crossing) return false;
-        add(at.at);
-    }
-    add(segment.ends[1].at);
-    return turnsBothWays(std::span(way).first(n)) && isSimpleWay(std::span(way).first(n));
-}
-
 void FaceCreases::arrange(const FaceSegment& segment) {
     const Vec3f a = segment.ends[0].at, b = segment.ends[1].at;
     const size_t n = chain_.size();
-    if (!segment.alone || (n > 1 && !isMonotone(segment) && !isZigzag(segment))) {
+    if (!segment.alone || (n > 1 && !isMonotone(segment, chain_) && !isZigzag(segment, chain_))) {
         for (size_t k = 0; k < n; ++k)
             chain_[k].at = between(a, b, static_cast<double>(k + 1) / static_cast<double>(n + 1));
         return;

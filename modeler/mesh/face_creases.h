@@ -80,8 +80,6 @@ private:
     bool moveAlongLine(const FaceSegment& segment, PiecePoint& piece) const;
     static Vec3f onLine(const Gap& gap, Vec3f p);
     bool mayLieAt(const FaceSegment& segment, Vec3f p) const;
-    bool isMonotone(const FaceSegment& segment) const;
-    bool isZigzag(const FaceSegment& segment) const;
     void arrange(const FaceSegment& segment);
     void separate(std::vector<FaceSegment>& segments);
 
