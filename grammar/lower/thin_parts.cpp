@@ -29,7 +29,8 @@ constexpr double leastFacing = 0.7;        ///< cosine between a plate's faces a
 constexpr double unsureArea = 4;           ///< more of that for each share of the lines that meet no face of the plate
 constexpr double mostUnsure = 0.25;        ///< at most
 constexpr double leastOfFaces = 0.03;      ///< the same of faces that are covered in part
-constexpr double besideFace = 0.04;        ///< of half an extent: where either side of a face is looked at
+constexpr double besideFace = 0.04;        ///< of half an extent: where either side of a face is looked at, at most
+constexpr double besideCells = 0.1;        ///< cells: the same
 /// Points of a face that are looked at.
 struct FacePoints {
     int mostAlong, most;
@@ -102,7 +103,7 @@ public:
     Box3f boxOf(const Candidate& candidate) const {
         derive::Scope scope = candidate.scope;
         for (int axis = 0; axis < 3; ++axis)
-            if (isThinAlong(candidate.scope, axis, cell_m_)) scope.size[axis] *= probed;
+            if (candidate.isBox || isThinAlong(candidate.scope, axis, cell_m_)) scope.size[axis] *= probed;
         return derive::boxOf(scope).as<float>();
     }
     LocalTapes& tapes() { return tapes_; }
@@ -126,12 +127,11 @@ private:
                         candidate.isBox ? ofFaces : missingOfPlate(candidate, met));
     }
 
-    /// What the mesh lacks of faces across a box's thin axes that are mostly free, by area: the strips of a bar that
-    /// stand out of a pane are so near to other triangles of it that these don't tell.
+    /// What the mesh lacks of a box's faces that are mostly free, by area: the strips of a bar that stand out of a pane
+    /// are so near to other triangles of it that these don't tell.
     double missingOfFaces(const Candidate& candidate, const eval::Tape& tape) {
         double most = 0;
         for (int axis = 0; axis < 3; ++axis) {
-            if (!isThinAlong(candidate.scope, axis, cell_m_)) continue;
             const double covered = candidate.facing_m2[static_cast<size_t>(axis)] / facesOf(candidate.scope, axis);
             if (covered >= 1 - leastMissingArea || exposedShare(candidate, axis, tape, roughly) < leastRoughly)
                 continue;
@@ -146,7 +146,8 @@ private:
     double exposedShare(const Candidate& candidate, int axis, const eval::Tape& tape, const FacePoints& points) {
         const derive::Scope& scope = candidate.scope;
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        const double apart_m = std::min(0.5 * cell_m_, scope.size[axis]);  // what crosses a bar is about as wide
+        const double apart_m =
+            std::min(0.5 * cell_m_, minComponent(scope.size));  // what crosses a bar is about as wide
         const auto along = [&](int across, int most) {
             return static_cast<int>(
                 std::clamp(std::ceil(scope.size[across] / apart_m), double{fewestLines}, static_cast<double>(most)));
@@ -155,6 +156,7 @@ private:
         const int onLong = along(uIsLong ? u : v, points.mostAlong),
                   onShort = along(uIsLong ? v : u, points.most / onLong);
         const int alongU = uIsLong ? onLong : onShort, alongV = uIsLong ? onShort : onLong;
+        const double beside = std::min(besideFace, 2 * besideCells * cell_m_ / scope.size[axis]);
         rows_.clear(), middles_.clear();
         for (const double side : {-1.0, 1.0})
             for (int j = 0; j < alongV; ++j)
@@ -163,8 +165,8 @@ private:
                     share[u] = 2 * (i + 0.535) / alongU - 1, share[v] = 2 * (j + 0.535) / alongV - 1;
                     share[axis] = side;
                     middles_.add(scope.point(share).as<float>());
-                    for (const double beside : {1 - besideFace, 1 + besideFace}) {
-                        share[axis] = side * beside;
+                    for (const double way : {-beside, beside}) {
+                        share[axis] = side * (1 + way);
                         rows_.add(scope.point(share).as<float>());
                     }
                 }
@@ -255,7 +257,7 @@ void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Pres
         Candidate& part = thin[i];
         bool covers = true;
         for (int axis = 0; axis < 3; ++axis)
-            if (part.isBox ? isThinAlong(part.scope, axis, static_cast<double>(cell_m)) : axis == part.plateAxis)
+            if (part.isBox || axis == part.plateAxis)
                 covers = covers && part.facing_m2[static_cast<size_t>(axis)] >=
                                        (1 - leastMissingArea) * facesOf(part.scope, axis);
         part.isPresent = presence.isWhole(part.scope, part.part, static_cast<double>(cell_m)) && (covers || part.isBox);

@@ -28,7 +28,7 @@ struct ThinPart {
 
 /// Looks at the parts whose scope is somewhere thinner than a cell: on lines through the scope along its thin axes,
 /// where does the field's surface belong to the part, and has the mesh a triangle of the part there? Of a plate
-/// that stands free, and of a box's faces across its thin axes that are mostly free, does the mesh cover them? Likewise
+/// that stands free, and of a thin box's faces that are mostly free, does the mesh cover them? Likewise
 /// at thin walls and narrow gaps at the faces of boxes
 /// (`findThinSections`): those that lack more than a tenth; and at the walls of shells and beside other cuts
 /// (`findMissingWalls`). Ascending by part. What else is thin within a thicker scope, as a needle's point or a

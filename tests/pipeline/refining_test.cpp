@@ -125,9 +125,11 @@ TEST(Refining, BarsBetweenPanesStandOutOfThem) {
         "start Wall -> size (36, 1.6, .4) split x { { ~1.5m: Pane }* }\n"
         "rule Pane -> split x { ~1: glass size (100%, 100%, 25%) | .08m: frame size (100%, 100%, 50%) }\n",
         context);
-    const MeshedModel made = meshed(model, 128, 3);
-    EXPECT_TRUE(made.missing->empty());
-    EXPECT_NEAR(mesh::measure(made.mesh).volume_m3, 24 * 1.6 * (1.42 * .1 + .08 * .2), .01);
+    for (const int resolution : {128, 256}) {
+        const MeshedModel made = meshed(model, resolution, 3);
+        EXPECT_TRUE(made.missing->empty()) << resolution;
+        EXPECT_NEAR(mesh::measure(made.mesh).volume_m3, 24 * 1.6 * (1.42 * .1 + .08 * .2), .003) << resolution;
+    }
 }
 
 /// Where bars cross, and where a pane holds one, less of them is free, and nothing is missing.
