@@ -193,17 +193,11 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
     return pipeline::writeText(request.model.file, document::applied((*source)->text(), *edit));
 }
 
-bool isName(std::string_view text) {
-    const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-    return isLetter(text[0]) &&
-           std::ranges::all_of(text, [&](char c) { return isLetter(c) || (c >= '0' && c <= '9'); });
-}
-
 Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar) {
     if ((request.pick >= 0) != !request.save.empty())
         return Error{Error::Kind::Usage,
                      "--pick NUMBER and --save NAME go together: which one, and the style it becomes"};
-    if (!request.save.empty() && !isName(request.save))
+    if (!request.save.empty() && !syntax::isWord(request.save))
         return Error{
             Error::Kind::Usage,
             fmt::format(

@@ -146,7 +146,7 @@ private:
         for (const syntax::Diagnostic& d : found.all())
             if (warned_.insert({d.span.source, d.span.begin, d.span.end}).second)
                 diagnostics_.warning(d.span, prefixed(setting.words, d.message), d.hint);
-        lookAtBoxes(*derivation, setting);
+        warnOfFloatingBoxes(*derivation, setting);
         Context context{progress_};
         const bool placesObjects = !derivation->objects.empty();
         if (const Status s = pipeline::tryObjects(*derivation, options.budget, context); !s.ok()) return s;
@@ -161,7 +161,7 @@ private:
 
     /// What hangs in the air at another setting, by boxes, which costs no mesh. Nothing where the start as it is has
     /// some.
-    void lookAtBoxes(const derive::Derivation& derivation, const Setting& setting) {
+    void warnOfFloatingBoxes(const derive::Derivation& derivation, const Setting& setting) {
         const uint32_t start = setting.options.start;
         if (setting.words.empty() && derivation.floating() == 0) standing_.insert(start);
         if (setting.words.empty() || setting.isEnd || !standing_.contains(start)) return;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "grammar/operations/operations.h"
 #include "grammar/rules/words.h"
@@ -17,15 +16,10 @@ namespace {
 
 Error refused(std::string why) { return {Error::Kind::Input, std::move(why)}; }
 
-bool isName(std::string_view text) {
-    const auto inName = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-    return !text.empty() && !std::isdigit(static_cast<unsigned char>(text[0])) &&
-           std::all_of(text.begin(), text.end(), inName);
-}
-
 /// Why a thing of this kind can't have a name, or "".
 std::string whyNot(const Occurrence& what, const std::string& name) {
-    if (!isName(name)) return fmt::format("'{}' is no name: letters, digits and '_', beginning with no digit", name);
+    if (!syntax::isWord(name))
+        return fmt::format("'{}' is no name: letters, digits and '_', beginning with no digit", name);
     if (syntax::isReserved(name) || rules::isTaken(name) || syntax::findDeclaration(name))
         return fmt::format("'{}' is a word of the language", name);
     if (what.kind != NameKind::Symbol) return {};

@@ -80,6 +80,9 @@ private:
     eval::Workspace workspace_;
 };
 
+/// A field's slope as far as it is believed: fractals' bound is hundreds, which they have nowhere.
+inline float believedSlope(const eval::Tape& tape) { return std::clamp(tape.lipschitz(), 1.0f, 4.0f); }
+
 /// Points as the evaluation takes them.
 struct PointList {
     std::vector<float> x, y, z;

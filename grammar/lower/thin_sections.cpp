@@ -16,7 +16,6 @@ namespace {
 constexpr int fewestAlong = 3, mostAlong = 18;  ///< lines along an axis of a face
 constexpr size_t mostTiles = 2048;              ///< of a face that are looked at, besides the first ones
 constexpr double leastTile = 3;                 ///< cells: as narrow as a part may show in an opening
-constexpr float steepest = 4;                   ///< slope of a field that is believed
 constexpr size_t firstFollowed = 48;            ///< lines of a face, where none of them meets surface nearby
 constexpr int stepHalvings = 8;                 ///< of a step around a crossing
 constexpr double leastThickness = 0.0078125;    ///< cells: in seams of parts that touch the field is 0 again
@@ -148,7 +147,7 @@ private:
     /// Keeps those lines that go into solid, or out of it, at the face, and adds some in tiles that a line misses but
     /// the surface may come into: a bar that runs through a house shows in an opening alone.
     void keepCrossing(Vec3d out, const eval::Tape& tape, bool intoSolid) {
-        const float slope = std::clamp(tape.lipschitz(), 1.0f, steepest);
+        const float slope = believedSlope(tape);
         std::vector<Line> crossing, open = lines_;
         for (size_t looked = 0; !open.empty() && looked < mostTiles; looked += open.size()) {
             points_.clear();

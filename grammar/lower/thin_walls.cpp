@@ -28,9 +28,8 @@ constexpr Density first{16, 384}, close{128, 8192};  ///< close where walls are 
 constexpr double leastThin = 0.1;                    ///< share of a shell's surface that is too thin
 constexpr int mostSteps = 400;                       ///< on a line
 constexpr float stepShare = 0.9f;                    ///< of how far the surface is at least
-constexpr float steepest = 4;       ///< slope of a field that is believed: fractals' is hundreds nowhere
-constexpr double leastStep = 0.06;  ///< in cells
-constexpr int halvings = 8;         ///< of a step around a crossing
+constexpr double leastStep = 0.06;                   ///< in cells
+constexpr int halvings = 8;                          ///< of a step around a crossing
 /// In cells, from the surface into the solid.
 constexpr std::array depths{0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75};
 
@@ -173,7 +172,7 @@ private:
             for (const Ray& ray : rays_) points_.add(ray.place().as<float>());
             evaluate(tape);
         };
-        const float share = stepShare / std::clamp(tape.lipschitz(), 1.0f, steepest);
+        const float share = stepShare / believedSlope(tape);
         placeAll();
         for (size_t i = 0; i < rays_.size(); ++i) rays_[i].value = values_[i];
         for (int step = 0; step < mostSteps && !rays_.empty(); ++step) {

@@ -205,10 +205,10 @@ private:
         if (findPart(faces_, "rest")) return;
         for (const Part& part : faces_.parts)
             if (!mayBeWithout(part) && !has(faces, part)) return;
-        std::vector<std::string_view> lost;
+        std::vector<std::string> lost;
         for (const Face& face : faces) {
             if (face.part) continue;
-            const std::string_view side = wordOf(edges_[plates_.plates[face.plates[0]].edge]);
+            const std::string side = plan::edgeWords(footprint_, edges_[plates_.plates[face.plates[0]].edge]).front();
             if (std::find(lost.begin(), lost.end(), side) == lost.end()) lost.push_back(side);
         }
         if (lost.empty()) return;
@@ -217,21 +217,6 @@ private:
             fmt::format("no part for {}, nor for rest: all goes but the parts that are written", fmt::join(lost, ", ")),
             "write 'rest: nil' if that is meant, or give 'rest' a shape of its own, which reaches to the "
             "sides without a part");
-    }
-
-    /// Where the side of an edge looks.
-    static std::string_view wordOf(const PlacedEdge& edge) {
-        switch (plan::facingOf(edge.normal())) {
-            case plan::Facing::Front:
-                return "front";
-            case plan::Facing::Back:
-                return "back";
-            case plan::Facing::Left:
-                return "left";
-            case plan::Facing::Right:
-                break;
-        }
-        return "right";
     }
 
     /// The last face of a ring may go on into its first one.

@@ -116,7 +116,7 @@ std::string NetworkTerrain::obstacle(const town::RoadParameters& parameters, con
     town::Land level = land;
     level.height = nullptr;
     town::RoadParameters few = parameters;
-    few.limit = 4;
+    few.limit = 4;  // whether any grow
     const auto grown = town::growRoads(few, level, context_.progress());
     if (grown.ok() ? grown->edges().empty() : grown.error().kind != Error::Kind::Budget) return {};
     return fmt::format(

@@ -35,7 +35,7 @@ void warnOfFaults(syntax::Diagnostics& diagnostics, const plan::Features& featur
         name.span,
         fmt::format("\"{}\", feature {}: {}{}", name.text, first->place, first->fault,
                     more ? fmt::format(" ({} more of its features have such faults)", more) : ""),
-        "what the rings enclose was made an outline, perhaps another one than was meant: mend the file");
+        "the outline is what the rings enclose, which may not be what they should say: correct the file");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace sgm::rules {
 
-/// Warns of texts in files that a `value` asks for and can't read, once a file and property.
+/// Warns of properties in files whose text a `value` can't read as a number, once a file and property.
 void warnOfUnreadValues(CheckContext& ctx);
 
 /// Warns of `value` and `word` behind a `footprint file(…)` of the same shape, whose outline reaches only what stands

@@ -9,6 +9,7 @@
 #include "grammar/rules/expressions.h"
 #include "grammar/rules/make.h"
 #include "grammar/rules/words.h"
+#include "modeler/field/plan_parameters.h"
 #include "modeler/plan/edge_words.h"
 
 namespace sgm::rules {
@@ -152,7 +153,7 @@ Expr checkPrimitiveArgument(CheckContext& ctx, Place& place, const Written& e, c
 
 /// The eaves of curved roofs are as thick as the board there.
 void warnOfThinEaves(CheckContext& ctx, const Solid& solid) {
-    if (solid.primitive->name != "domeRoof" && solid.primitive->name != "bellRoof") return;
+    if (solid.primitive->parameters.data() != field::plan_parameters::curvedRoofParameters) return;
     const auto overhang = fold(solid.args[0], ctx.params.defaults), fascia = fold(solid.args[1], ctx.params.defaults);
     if (overhang && fascia && overhang->num() > 0 && fascia->num() <= 0)
         ctx.diagnostics.warning(

@@ -91,6 +91,10 @@ private:
 
 }  // namespace
 
+bool isWord(std::string_view text) {
+    return !text.empty() && isLetter(text[0]) && std::all_of(text.begin(), text.end(), isWordPart);
+}
+
 std::vector<Token> lex(const Source& source) {
     std::vector<Token> tokens;
     Lexer lexer(source.text());

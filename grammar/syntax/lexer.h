@@ -36,6 +36,8 @@ struct Token {
     uint32_t begin = 0, end = 0;
 };
 
+/// Whether all of a text is one word: letters, digits and _, not beginning with a digit.
+bool isWord(std::string_view text);
 std::vector<Token> lex(const Source& source);
 /// The tokens of `source` without blanks and comments.
 std::vector<Token> lexSignificant(const Source& source);

@@ -59,28 +59,28 @@ struct FacePoint {
 /// Positive where `b` points to the left of `a`.
 constexpr double turn(FacePoint a, FacePoint b) { return a.u * b.v - a.v * b.u; }
 
-/// Whether a way from point to point turns to the left and to the right.
-inline bool turnsBothWays(std::span<const FacePoint> way) {
+/// Whether a polyline turns to the left and to the right.
+inline bool turnsBothWays(std::span<const FacePoint> points) {
     bool left = false, right = false;
-    for (size_t i = 0; i + 2 < way.size(); ++i) {
-        const double t = turn(way[i + 1] - way[i], way[i + 2] - way[i + 1]);
+    for (size_t i = 0; i + 2 < points.size(); ++i) {
+        const double t = turn(points[i + 1] - points[i], points[i + 2] - points[i + 1]);
         left |= t > 0, right |= t < 0;
     }
     return left && right;
 }
 
-/// Whether a way from point to point neither meets nor touches itself. O(n²).
-inline bool isSimpleWay(std::span<const FacePoint> way) {
+/// Whether a polyline neither meets nor touches itself. O(n²).
+inline bool isSimple(std::span<const FacePoint> points) {
     // Of the line through a and b.
     const auto areOnOneSide = [&](FacePoint a, FacePoint b, FacePoint p, FacePoint q) {
         return turn(b - a, p - a) * turn(b - a, q - a) > 0;
     };
-    for (size_t i = 0; i + 2 < way.size(); ++i) {
-        const FacePoint before = way[i + 1] - way[i], after = way[i + 2] - way[i + 1];
+    for (size_t i = 0; i + 2 < points.size(); ++i) {
+        const FacePoint before = points[i + 1] - points[i], after = points[i + 2] - points[i + 1];
         if (turn(before, after) == 0 && before.u * after.u + before.v * after.v <= 0) return false;
-        for (size_t k = i + 2; k + 1 < way.size(); ++k)
-            if (!areOnOneSide(way[i], way[i + 1], way[k], way[k + 1]) &&
-                !areOnOneSide(way[k], way[k + 1], way[i], way[i + 1]))
+        for (size_t k = i + 2; k + 1 < points.size(); ++k)
+            if (!areOnOneSide(points[i], points[i + 1], points[k], points[k + 1]) &&
+                !areOnOneSide(points[k], points[k + 1], points[i], points[i + 1]))
                 return false;
     }
     return true;

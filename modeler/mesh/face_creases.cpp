@@ -43,19 +43,19 @@ bool isMonotone(const FaceSegment& segment, std::span<const Break> breaks) {
     return last + monotoneShare <= 1;
 }
 
-/// Whether the way over breaks that are where their pieces cross goes to and fro, as below a ledge, and stays clear of
-/// itself. At a corner that it goes around breaks had better move with the corner.
+/// Whether the breaks are where their pieces cross, and the polyline over them turns both ways, as below a ledge, and
+/// is simple. Around a corner it turns one way: there breaks have to move with the corner.
 bool isZigzag(const FaceSegment& segment, std::span<const Break> breaks) {
     const FaceAxes axes(segment.axis);
-    std::vector<FacePoint> way;
-    const auto add = [&](Vec3f p) { way.push_back({p[axes.u], p[axes.v]}); };
+    std::vector<FacePoint> points;
+    const auto add = [&](Vec3f p) { points.push_back({p[axes.u], p[axes.v]}); };
     add(segment.ends[0].at);
     for (const Break& at : breaks) {
         if (at.at != at.crossing) return false;
         add(at.at);
     }
     add(segment.ends[1].at);
-    return turnsBothWays(way) && isSimpleWay(way);
+    return turnsBothWays(points) && isSimple(points);
 }
 
 }  // namespace
