@@ -122,7 +122,7 @@ TEST_F(Cli, TownsOnHillsAreTheSameAtAnyThreadCount) {
     std::string first[2];
     for (const std::string threads : {"1", "3"}) {
         const std::string files[] = {path("town.glb"), path("plan.geojson")};
-        const Outcome run = sgm("build examples/city/hills.sgm --set side=500m --cell 8 --object-cell 2 --threads " +
+        const Outcome run = sgm("build examples/city/hills.sgm --set side=400m --cell 8 --object-cell 4 --threads " +
                                 threads + " -o " + files[0] + " -o " + files[1]);
         ASSERT_EQ(run.code, 0) << run.out;
         for (const int k : {0, 1}) {

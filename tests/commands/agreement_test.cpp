@@ -70,6 +70,7 @@ std::string builtOf(std::shared_ptr<const rules::Grammar> grammar, bool& hasMesh
     if (!model.ok()) return model.error().message;
     GridRequest grid;
     grid.resolution = 32;
+    grid.surface = mesh::Surface::Cubes;  // all that is asked is whether there are triangles
     grid.threads = 2;
     const auto mesh = makeMesh(*model, grid, context, true);
     hasMesh = mesh.ok() && mesh->mesh.triangleCount() > 0;
