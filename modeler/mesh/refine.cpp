@@ -2,24 +2,21 @@
 
 #include <algorithm>
 #include <iterator>
-#include <mutex>
 #include <optional>
 
-#include "modeler/core/parallel.h"
-#include "modeler/mesh/box_finder.h"
 #include "modeler/mesh/cell_seams.h"
-#include "modeler/mesh/exact_meeting.h"
 #include "modeler/mesh/fine_cells.h"
 #include "modeler/mesh/one_chunk.h"
+#include "modeler/mesh/wrong_meetings.h"
 
 namespace sgm::mesh {
 namespace {
 
-constexpr int mostFittings = 24;            ///< of the cells, which shrink each time
+constexpr int mostFittings = 24;            ///< of the cells, which change each time
+constexpr int mostWidenings = 4;            ///< the first of them: cells that don't fit are added; they go afterwards
 constexpr size_t mostGrowth = 4;            ///< times the cells that were asked for there may come to be
 constexpr size_t marginDivisor = 4;         ///< of the cells, for how many are meshed beyond where they grow
 constexpr size_t leastGrowth = 512;         ///< as many may always
-constexpr size_t trianglesAtOnce = 4096;    ///< of a parallel loop
 constexpr float sameNormal = 1.0f - 1e-5f;  ///< cosine between normals that needn't be told apart
 constexpr uint32_t noFine = 0xffffffffu;
 
@@ -173,32 +170,14 @@ private:
 /// The changed triangles that cross another one, as they are numbered in the coarse surface.
 std::vector<uint32_t> crossingTriangles(const JoinedSurface& joined, int threads, const Progress* progress) {
     const Chunk& surface = joined.surface();
-    std::vector<Box3f> boxes;
-    std::vector<bool> isChanged(surface.triangles.size());
-    for (const auto& [t, before] : joined.changed()) {
-        boxes.push_back(boxOf(surface.positions, surface.triangles[t]));
-        isChanged[t] = true;
-    }
+    std::vector<uint32_t> changed;
+    for (const JoinedSurface::Changed& c : joined.changed()) changed.push_back(c.triangle);
     std::vector<uint32_t> crossing;
-    if (boxes.empty()) return crossing;
-    const BoxFinder finder(boxes);
-    std::mutex mutex;
-    const size_t steps = (surface.triangles.size() + trianglesAtOnce - 1) / trianglesAtOnce;
-    parallelFor(steps, threads, progress, [&](size_t step, int) {
-        std::vector<uint32_t> found, beside;
-        const size_t end = std::min(surface.triangles.size(), (step + 1) * trianglesAtOnce);
-        for (size_t t = step * trianglesAtOnce; t < end; ++t) {
-            finder.find(boxOf(surface.positions, surface.triangles[t]), beside);
-            for (const uint32_t b : beside) {
-                const auto& [other, before] = joined.changed()[b];
-                if (isChanged[t] && other <= t) continue;  // compared from the other one's side, or the same
-                if (meetWrongly(surface.positions, surface.triangles[t], surface.triangles[other]))
-                    found.push_back(before);
-            }
-        }
-        const std::lock_guard lock(mutex);
-        crossing.insert(crossing.end(), found.begin(), found.end());
-    });
+    for (const auto& [t, other] : findWrongMeetings(surface.positions, surface.triangles, changed, threads, progress))
+        crossing.push_back(joined
+                               .changed()[static_cast<size_t>(std::lower_bound(changed.begin(), changed.end(), other) -
+                                                              changed.begin())]
+                               .before);
     std::sort(crossing.begin(), crossing.end());
     crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
     return crossing;
@@ -222,8 +201,10 @@ public:
     /// mesh would have too many triangles.
     Result<std::pair<Chunk, CellSet>> refine(CellSet cells) {
         const size_t mostCells = std::max(mostGrowth * cells.size(), leastGrowth);
-        if (guessTriangles(cells) > options_.mostTriangles)
+        if (CellSet first = affordable(cells); first.size() < cells.size() && options_.halvings > 1)
             return Error{Error::Kind::Budget, "cells halved so often have too many triangles"};
+        else
+            cells = std::move(first);
         if (Status s = meshFinely(cells.list()); !s) return s.error();
         cells = reachedOf(cells);
         for (int fitting = 0; fitting < mostFittings && !cells.empty(); ++fitting) {
@@ -242,17 +223,27 @@ public:
                 }
             }
             if (cancelled(progress_)) return cancelledError();
-            cells = componentsWithout(cells, *misfits);
+            if (fitting < mostWidenings && cells.size() + misfits->size() <= mostCells)
+                for (const Vec3i cell : misfits->list()) cells.insert(cell);
+            else
+                cells = componentsWithout(cells, *misfits);
         }
         return std::pair(Chunk{}, CellSet{});
     }
 
 private:
-    /// How many triangles the mesh may come to have, where the fine surface is about as large as the coarse one.
-    size_t guessTriangles(const CellSet& cells) const {
-        const auto full = static_cast<size_t>(
-            std::count_if(cells.list().begin(), cells.list().end(), [&](Vec3i c) { return !coarseCells_.isEmpty(c); }));
-        return coarse_.triangles.size() + (full * 2 << 2 * options_.halvings);
+    /// The first cells, as many as the mesh can have triangles for, where the fine surface is about as large as the
+    /// coarse one.
+    CellSet affordable(const CellSet& cells) const {
+        const size_t ofCell = size_t{2} << 2 * options_.halvings;
+        CellSet first;
+        size_t triangles = coarse_.triangles.size();
+        for (const Vec3i cell : cells.list()) {
+            if (!coarseCells_.isEmpty(cell)) triangles += ofCell;
+            if (triangles > options_.mostTriangles) break;
+            first.insert(cell);
+        }
+        return first;
     }
 
     Status meshFinely(std::span<const Vec3i> cells) {

@@ -13,7 +13,7 @@ namespace sgm::mesh {
 
 struct RefineOptions {
     int halvings = 1;            ///< of the cells, 1 … 3
-    size_t mostTriangles = ~0u;  ///< cells are halved less often where the mesh would have more, by a guess
+    size_t mostTriangles = ~0u;  ///< the first cells alone, or less often, where the mesh would have more, by a guess
     int threads = 0;             ///< 0: all; the result is the same for any number
 };
 

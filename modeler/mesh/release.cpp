@@ -3,36 +3,32 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 #include <span>
 
-#include "modeler/core/parallel.h"
-#include "modeler/mesh/box_finder.h"
-#include "modeler/mesh/exact_meeting.h"
+#include "modeler/mesh/meeting_point.h"
+#include "modeler/mesh/touched_triangles.h"
+#include "modeler/mesh/wrong_meetings.h"
 
 namespace sgm::mesh {
 namespace {
 
-/// Of the square of a triangle's longest edge: how far its area may face away, for rounding.
-constexpr double foldedShare = 1e-6;
-constexpr double settledShare = 0.02;  ///< of the distance of its neighbours: a corner this near to its planes stays
-constexpr double leastSine = 0.05;     ///< between planes that meet in a point
-constexpr size_t trianglesPerStep = 1 << 13;  ///< of a parallel loop
-constexpr int mostExchanges = 6;              ///< of a vertex
+constexpr float sameDirection = 0.99f;  ///< cosine between the triangles beside an edge that may turn
+constexpr int mostTurns = 6;            ///< of edges at one vertex
+constexpr int mostExchanges = 6;        ///< of a vertex
 /// Of the way between two vertices that are exchanged: how far each ends up from its middle.
 constexpr float exchangedShare = 0.125f;
 
 class Release {
 public:
-    Release(const Mesh& mesh, FlatMesh& flat) : mesh_(mesh), flat_(flat) {}
+    Release(const Mesh& mesh, FlatMesh& flat) : mesh_(mesh), flat_(flat), touched_(mesh, flat) {}
 
     size_t run(int threads, const Progress* progress) {
         findVertices();
         if (moves_.empty()) return 0;
         const size_t confined = moves_.size();
-        findTriangles();
+        touched_.find(moveOf_);
         addNeighbours();
-        findTriangles();
+        touched_.find(moveOf_);
         findAround();
         placeJunctions();
         for (const Move& move : moves_) flat_.positions[move.vertex] = move.place;
@@ -52,14 +48,27 @@ private:
         int centredIn = 0;                   ///< in which round, or 0
         Vec3f compared = before;             ///< its place when triangles were compared last
     };
-    /// A triangle with a vertex that moves.
-    struct Touched {
-        uint32_t triangle;
-        int creases;    ///< a bit for each corner that lies on a crease
-        Vec3d outward;  ///< the sum of its corners' normals, of those at creases
-        double before;  ///< twice its area, as far as it faced outward
+    /// Triangles of one piece between which edges were exchanged for other diagonals, as they were before.
+    struct Turn {
+        struct Side {
+            uint32_t triangle;
+            Triangle corners;
+            double before;  ///< as TouchedTriangles::Touched::before
+        };
+        std::vector<Side> sides;
+        bool undone = false;
+
+        /// False for a triangle that another turn has changed.
+        bool add(const TouchedTriangles::Touched& touched, const FlatMesh& flat) {
+            if (touched.hasTurned) return false;
+            const uint32_t t = touched.triangle;
+            if (std::none_of(sides.begin(), sides.end(), [&](const Side& side) { return side.triangle == t; }))
+                sides.push_back({t, flat.triangles[t], touched.before});
+            return true;
+        }
     };
-    static constexpr uint32_t none = 0xffffffffu;
+    using Touched = TouchedTriangles::Touched;
+    static constexpr uint32_t none = TouchedTriangles::none;
 
     void findVertices() {
         moveOf_.assign(flat_.positions.size(), none);
@@ -69,13 +78,6 @@ private:
                 moveOf_[v] = static_cast<uint32_t>(moves_.size());
                 moves_.push_back({v, flat_.positions[v], confined.place});
             }
-    }
-
-    double facing(const Touched& touched) const {
-        const Triangle& t = flat_.triangles[touched.triangle];
-        const Vec3d a = flat_.positions[t.x].as<double>();
-        return dot(cross(flat_.positions[t.y].as<double>() - a, flat_.positions[t.z].as<double>() - a),
-                   touched.outward);
     }
 
     /// The other vertices of creases beside those that move: they may be exchanged with them.
@@ -104,17 +106,16 @@ private:
         }
     }
 
-    /// A plane at a vertex.
-    struct PlaneAt {
+    /// The plane of a piece at a vertex.
+    struct PieceAt : PlaneAt {
         uint64_t key;  ///< of its triangles, as FlatMesh::keys
-        Vec3d normal, point;
         bool isInner;  ///< the point is no vertex of a crease
     };
 
     /// Vertices that three and more pieces share go to where the pieces' planes meet: what was kept in a face knows two
     /// of them.
     void placeJunctions() {
-        std::vector<std::vector<PlaneAt>> planes(moves_.size());
+        std::vector<std::vector<PieceAt>> planes(moves_.size());
         for (const Touched& touched : touched_) {
             const Triangle& t = flat_.triangles[touched.triangle];
             const uint64_t key = flat_.keys[touched.triangle];
@@ -125,7 +126,7 @@ private:
                 for (const int k : {(i + 1) % 3, (i + 2) % 3}) {
                     const uint32_t other = moveOf_[t[k]];
                     const Vec3f point = other == none ? flat_.positions[t[k]] : moves_[other].place;
-                    const PlaneAt plane{key, touched.outward, point.as<double>(), !(touched.creases >> k & 1)};
+                    const PieceAt plane{{touched.outward, point.as<double>()}, key, !(touched.creases >> k & 1)};
                     if (known == planes[m].end())
                         known = planes[m].insert(known, plane);
                     else if (plane.isInner && !known->isInner)  // that lies on the surface as it is
@@ -134,65 +135,22 @@ private:
             }
         }
         for (size_t m = 0; m < moves_.size(); ++m)
-            if (planes[m].size() >= 3) moves_[m].place = meetingOf(planes[m], moves_[m].place);
-    }
-
-    /// The point of up to three planes nearest to `near`; `near` where they meet far from it.
-    static Vec3f meetingOf(std::span<const PlaneAt> planes, Vec3f near) {
-        const Vec3d from = near.as<double>();
-        std::array<Vec3d, 3> basis{};
-        std::array<double, 3> ways{};
-        size_t n = 0;
-        double size = 0;
-        for (const PlaneAt& plane : planes) {
-            if (n == 3) break;
-            Vec3d direction = plane.normal;
-            double way = dot(plane.normal, plane.point - from);
-            for (size_t i = 0; i < n; ++i) {
-                const double share = dot(plane.normal, basis[i]);
-                direction -= basis[i] * share;
-                way -= share * ways[i];
-            }
-            size = std::max(size, length(plane.point - from));
-            const double rest = length(direction);
-            if (!(rest > leastSine)) continue;
-            basis[n] = direction * (1 / rest);
-            ways[n++] = way / rest;
-        }
-        Vec3d found = from;
-        for (size_t i = 0; i < n; ++i) found += basis[i] * ways[i];
-        const double way = length(found - from);
-        return way > settledShare * size && way <= size ? found.as<float>() : near;
-    }
-
-    void findTriangles() {
-        touched_.clear();
-        for (size_t i = 0; i < mesh_.chunks.size(); ++i) {
-            const std::vector<CornerNormal>& normals = mesh_.chunks[i].cornerNormals;
-            auto normal = normals.begin();
-            for (uint32_t t = 0; t < flat_.parts[i].triangles; ++t) {
-                const Triangle& corners = flat_.triangles[flat_.parts[i].firstTriangle + t];
-                Touched touched{flat_.parts[i].firstTriangle + t, 0, {}, 0};
-                for (; normal != normals.end() && normal->corner / 3 == t; ++normal)
-                    touched.outward += normal->normal.as<double>(), touched.creases |= 1 << normal->corner % 3;
-                if (moveOf_[corners.x] == none && moveOf_[corners.y] == none && moveOf_[corners.z] == none) continue;
-                touched.outward = normalized(touched.outward);
-                touched.before = facing(touched);
-                touched_.push_back(touched);
-            }
-        }
+            if (planes[m].size() >= 3)
+                moves_[m].place =
+                    meetingPoint(std::vector<PlaneAt>(planes[m].begin(), planes[m].end()), moves_[m].place);
     }
 
     /// Neighbours on a crease that changed places are exchanged, a few times at most; else a vertex goes between its
     /// neighbours on the crease; what still folds over moves back.
     void unfold() {
-        for (auto folded = foldedTriangles(); !folded.empty(); folded = foldedTriangles()) {
+        for (auto folded = touched_.folded(); !folded.empty(); folded = touched_.folded()) {
             ++round_;
             std::vector<uint32_t> rest;
             for (const uint32_t t : folded) {
-                const Triangle& corners = flat_.triangles[t];
+                const Triangle corners = flat_.triangles[t];
                 bool done = false;
                 for (int i = 0; i < 3; ++i) done |= exchange(corners[i], corners[(i + 1) % 3]);
+                done = done || turnEdges(t);
                 for (int i = 0; i < 3 && !done; ++i) done |= centre(corners[i]);
                 if (!done) rest.push_back(t);
             }
@@ -249,6 +207,94 @@ private:
                            [&](uint32_t w) { return w != corner && dot(flat_.positions[w] - at, way) < 0; });
     }
 
+    /// The triangle of the same piece beyond the edge from `a` to `b` of `t`; null where it is another one's.
+    Touched* beyond(const Touched& t, uint32_t a, uint32_t b) {
+        const uint32_t m = moveOf_[a] != none ? moveOf_[a] : moveOf_[b];
+        if (m == none) return nullptr;
+        for (const uint32_t s : trianglesOf_[m])
+            for (int i = 0; i < 3; ++i)
+                if (flat_.triangles[s][i] == b && flat_.triangles[s][(i + 1) % 3] == a &&
+                    flat_.keys[s] == flat_.keys[t.triangle])
+                    return touched_.of(s);
+        return nullptr;
+    }
+
+    /// Whether two vertices have an edge, one of which may move; true where neither may.
+    bool haveEdge(uint32_t v, uint32_t w) const {
+        if (moveOf_[v] == none) std::swap(v, w);
+        if (moveOf_[v] == none) return true;
+        const auto holdsOther = [&](uint32_t t) {
+            const Triangle& c = flat_.triangles[t];
+            return c.x == w || c.y == w || c.z == w;
+        };
+        const std::vector<uint32_t>& around = trianglesOf_[moveOf_[v]];
+        return std::any_of(around.begin(), around.end(), holdsOther);
+    }
+
+    bool isBack(uint32_t v) const { return moveOf_[v] != none && !moves_[moveOf_[v]].moved; }
+
+    void setCorner(uint32_t triangle, int corner, uint32_t vertex) {
+        uint32_t& v = flat_.triangles[triangle][corner];
+        if (moveOf_[v] != none) std::erase(trianglesOf_[moveOf_[v]], triangle);
+        if (moveOf_[vertex] != none) trianglesOf_[moveOf_[vertex]].push_back(triangle);
+        v = vertex;
+    }
+
+    /// Exchanges edges at a vertex of a folded triangle for others across its piece, where no triangle folds over then:
+    /// a vertex that went to the other side of a corner has others before it. Once a triangle.
+    bool turnEdges(uint32_t triangle) {
+        const Triangle corners = flat_.triangles[triangle];
+        for (int i = 0; i < 3; ++i)
+            for (int k = 1; k < 3; ++k) {
+                Turn turn;
+                if (turnAround(triangle, corners[i], corners[(i + k) % 3], turn)) {
+                    for (const Turn::Side& side : turn.sides) {
+                        Touched& touched = *touched_.of(side.triangle);
+                        touched.hasTurned = touched.isNew = true;
+                        touched.before = 0;
+                    }
+                    turns_.push_back(std::move(turn));
+                    return true;
+                }
+                restore(turn);
+            }
+        return false;
+    }
+
+    /// Takes edges of `pivot` to the third corner of a triangle away, one after the other, and gives `end` the other
+    /// diagonals, until the triangle faces outward. False where it never does; some may have turned then.
+    bool turnAround(uint32_t triangle, uint32_t pivot, uint32_t end, Turn& turn) {
+        for (int step = 0; step < mostTurns; ++step) {
+            const int at = placeIn(triangle, pivot), to = placeIn(triangle, end), third = 3 - at - to;
+            const uint32_t apex = flat_.triangles[triangle][third];
+            Touched& t = *touched_.of(triangle);
+            const bool leaves = third == (at + 1) % 3;  // the edge runs from the pivot to the apex
+            Touched* const s = leaves ? beyond(t, pivot, apex) : beyond(t, apex, pivot);
+            if (!s || dot(t.outward, s->outward) < sameDirection) return false;
+            const int own = placeIn(s->triangle, pivot);
+            const uint32_t other = flat_.triangles[s->triangle][3 - own - placeIn(s->triangle, apex)];
+            if (haveEdge(end, other) || isBack(pivot) || isBack(end) || isBack(apex) || isBack(other)) return false;
+            if (!turn.add(t, flat_) || !turn.add(*s, flat_)) return false;
+            setCorner(triangle, third, other), setCorner(s->triangle, own, end);
+            if (touched_.isFlat(*s)) return false;
+            if (!touched_.isFlat(t)) return true;
+        }
+        return false;
+    }
+
+    int placeIn(uint32_t triangle, uint32_t vertex) const {
+        const Triangle& c = flat_.triangles[triangle];
+        return c.x == vertex ? 0 : c.y == vertex ? 1 : 2;
+    }
+
+    void restore(const Turn& turn) {
+        for (const Turn::Side& side : turn.sides) {
+            for (int i = 0; i < 3; ++i)
+                if (flat_.triangles[side.triangle][i] != side.corners[i]) setCorner(side.triangle, i, side.corners[i]);
+            touched_.of(side.triangle)->before = side.before;
+        }
+    }
+
     /// Moves a vertex between its neighbours on the crease, once; whether that was done in this round.
     bool centre(uint32_t v) {
         if (moveOf_[v] == none || keysOf_[moveOf_[v]].size() != 2) return false;
@@ -261,26 +307,6 @@ private:
         return true;
     }
 
-    std::vector<uint32_t> foldedTriangles() const {
-        std::vector<uint32_t> folded;
-        for (const Touched& touched : touched_) {
-            const double now = facing(touched);
-            if (now < touched.before && now < -foldedShare * longestSquare(touched.triangle))
-                folded.push_back(touched.triangle);
-        }
-        return folded;
-    }
-
-    double longestSquare(uint32_t triangle) const {
-        const Triangle& t = flat_.triangles[triangle];
-        double most = 0;
-        for (int i = 0; i < 3; ++i) {
-            const Vec3d d = (flat_.positions[t[(i + 1) % 3]] - flat_.positions[t[i]]).as<double>();
-            most = std::max(most, dot(d, d));
-        }
-        return most;
-    }
-
     /// Whether a corner of a triangle isn't where it was at first, or when triangles were compared last.
     bool hasMovedFrom(Vec3f Move::*place, const Triangle& t) const {
         for (int i = 0; i < 3; ++i)
@@ -291,55 +317,53 @@ private:
     /// Triangles that meet others wrongly, one of them with a vertex that has moved since this was asked last. Those of
     /// whose vertices none is elsewhere than at first meet no others like that.
     std::vector<uint32_t> crossingTriangles(int threads, const Progress* progress) {
-        std::vector<uint32_t> changed;
-        std::vector<Box3f> boxes;
-        for (const Touched& touched : touched_) {
-            const Triangle& t = flat_.triangles[touched.triangle];
-            if (!hasMovedFrom(&Move::compared, t)) continue;
+        std::vector<uint32_t> changed, crossing;
+        for (Touched& touched : touched_) {
+            if (!touched.isNew && !hasMovedFrom(&Move::compared, flat_.triangles[touched.triangle])) continue;
             changed.push_back(touched.triangle);
-            boxes.push_back(boxOf(flat_.positions, t));
+            touched.isNew = false;
         }
         for (Move& move : moves_) move.compared = flat_.positions[move.vertex];
-        std::vector<uint8_t> isChanged(flat_.triangles.size());
-        for (const uint32_t t : changed) isChanged[t] = 1;
         const auto isElsewhere = [&](uint32_t t) { return hasMovedFrom(&Move::before, flat_.triangles[t]); };
-        const BoxFinder finder(boxes);
-        std::mutex mutex;
-        std::vector<uint32_t> crossing;
-        const size_t steps = (flat_.triangles.size() + trianglesPerStep - 1) / trianglesPerStep;
-        parallelFor(steps, threads, progress, [&](size_t step, int) {
-            std::vector<uint32_t> found, beside;
-            const size_t end = std::min(flat_.triangles.size(), (step + 1) * trianglesPerStep);
-            for (size_t t = step * trianglesPerStep; t < end; ++t) {
-                finder.find(boxOf(flat_.positions, flat_.triangles[t]), beside);
-                for (const uint32_t b : beside) {
-                    const uint32_t other = changed[b];
-                    if (isChanged[t] && other <= t) continue;  // compared from the other one's side, or the same
-                    if (!(isElsewhere(other) || isElsewhere(static_cast<uint32_t>(t)))) continue;
-                    if (meetWrongly(flat_.positions, flat_.triangles[t], flat_.triangles[other]))
-                        found.insert(found.end(), {static_cast<uint32_t>(t), other});
-                }
-            }
-            if (found.empty()) return;
-            const std::lock_guard lock(mutex);
-            crossing.insert(crossing.end(), found.begin(), found.end());
-        });
+        for (const auto& pair : findWrongMeetings(flat_.positions, flat_.triangles, changed, threads, progress))
+            if (std::any_of(pair.begin(), pair.end(), isElsewhere))
+                crossing.insert(crossing.end(), pair.begin(), pair.end());
         std::sort(crossing.begin(), crossing.end());
         crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
         return crossing;
     }
 
-    /// Moves the vertices of some triangles back. Whether there were any.
+    /// Moves the vertices of some triangles back, and turns edges between them back. Whether there were any.
     bool revert(const std::vector<uint32_t>& triangles) {
         bool some = false;
-        for (const uint32_t t : triangles)
-            for (int i = 0; i < 3; ++i) {
-                const uint32_t m = moveOf_[flat_.triangles[t][i]];
-                if (m == none || !moves_[m].moved) continue;
-                moves_[m].moved = false;
-                flat_.positions[moves_[m].vertex] = moves_[m].before;
-                some = true;
+        for (const uint32_t t : triangles) some |= revertCorners(flat_.triangles[t]);
+        for (bool again = some; again;) {
+            again = false;
+            for (Turn& turn : turns_) {
+                const auto isHeld = [&](const Turn::Side& side) {
+                    return !isBack(side.corners.x) && !isBack(side.corners.y) && !isBack(side.corners.z);
+                };
+                if (turn.undone || std::all_of(turn.sides.begin(), turn.sides.end(), isHeld)) continue;
+                restore(turn);
+                for (const Turn::Side& side : turn.sides) {
+                    revertCorners(side.corners);
+                    touched_.of(side.triangle)->isNew = true;
+                }
+                turn.undone = again = true;
             }
+        }
+        return some;
+    }
+
+    bool revertCorners(const Triangle& corners) {
+        bool some = false;
+        for (int i = 0; i < 3; ++i) {
+            const uint32_t m = moveOf_[corners[i]];
+            if (m == none || !moves_[m].moved) continue;
+            moves_[m].moved = false;
+            flat_.positions[moves_[m].vertex] = moves_[m].before;
+            some = true;
+        }
         return some;
     }
 
@@ -347,9 +371,10 @@ private:
     FlatMesh& flat_;
     std::vector<Move> moves_;
     PageVector<uint32_t> moveOf_;  ///< by vertex
-    std::vector<Touched> touched_;
+    TouchedTriangles touched_;
     std::vector<std::vector<uint64_t>> keysOf_;       ///< by move, ascending
     std::vector<std::vector<uint32_t>> trianglesOf_;  ///< by move
+    std::vector<Turn> turns_;
     int round_ = 0;
 };
 

@@ -1,0 +1,67 @@
+#include "modeler/mesh/touched_triangles.h"
+
+#include <algorithm>
+
+namespace sgm::mesh {
+namespace {
+
+/// Of the square of a triangle's longest edge: how far its area may face away, for rounding.
+constexpr double foldedShare = 1e-6;
+
+}  // namespace
+
+void TouchedTriangles::find(const PageVector<uint32_t>& moveOf) {
+    touched_.clear();
+    for (size_t i = 0; i < mesh_.chunks.size(); ++i) {
+        const std::vector<CornerNormal>& normals = mesh_.chunks[i].cornerNormals;
+        auto normal = normals.begin();
+        for (uint32_t t = 0; t < flat_.parts[i].triangles; ++t) {
+            const Triangle& corners = flat_.triangles[flat_.parts[i].firstTriangle + t];
+            Touched touched{flat_.parts[i].firstTriangle + t, 0, {}, 0};
+            for (; normal != normals.end() && normal->corner / 3 == t; ++normal)
+                touched.outward += normal->normal.as<double>(), touched.creases |= 1 << normal->corner % 3;
+            if (moveOf[corners.x] == none && moveOf[corners.y] == none && moveOf[corners.z] == none) continue;
+            touched.outward = normalized(touched.outward);
+            touched.before = facing(touched);
+            touched_.push_back(touched);
+        }
+    }
+}
+
+TouchedTriangles::Touched* TouchedTriangles::of(uint32_t triangle) {
+    const auto at = std::lower_bound(touched_.begin(), touched_.end(), triangle,
+                                     [](const Touched& touched, uint32_t t) { return touched.triangle < t; });
+    return at != touched_.end() && at->triangle == triangle ? &*at : nullptr;
+}
+
+std::vector<uint32_t> TouchedTriangles::folded() const {
+    std::vector<uint32_t> found;
+    for (const Touched& touched : touched_) {
+        const double now = facing(touched);
+        if (now < touched.before && now < -foldedShare * longestSquare(touched.triangle))
+            found.push_back(touched.triangle);
+    }
+    return found;
+}
+
+bool TouchedTriangles::isFlat(const Touched& touched) const {
+    return !(facing(touched) > foldedShare * longestSquare(touched.triangle));
+}
+
+double TouchedTriangles::facing(const Touched& touched) const {
+    const Triangle& t = flat_.triangles[touched.triangle];
+    const Vec3d a = flat_.positions[t.x].as<double>();
+    return dot(cross(flat_.positions[t.y].as<double>() - a, flat_.positions[t.z].as<double>() - a), touched.outward);
+}
+
+double TouchedTriangles::longestSquare(uint32_t triangle) const {
+    const Triangle& t = flat_.triangles[triangle];
+    double most = 0;
+    for (int i = 0; i < 3; ++i) {
+        const Vec3d d = (flat_.positions[t[(i + 1) % 3]] - flat_.positions[t[i]]).as<double>();
+        most = std::max(most, dot(d, d));
+    }
+    return most;
+}
+
+}  // namespace sgm::mesh

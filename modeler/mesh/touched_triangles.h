@@ -1,0 +1,48 @@
+// Triangles at vertices that move, and which way they faced before.
+// Enters: a mesh with the normals of its corners, its flat form, and which vertices may move. Leaves: triangles that
+// have folded over since.
+#pragma once
+
+#include <vector>
+
+#include "modeler/mesh/flat_mesh.h"
+
+namespace sgm::mesh {
+
+/// The list, ascending. The mesh and its flat form have to stay; positions and corners of the flat form may change.
+class TouchedTriangles {
+public:
+    static constexpr uint32_t none = 0xffffffffu;  ///< stands for a vertex that stays
+    struct Touched {
+        uint32_t triangle;
+        int creases;             ///< a bit for each corner that lies on a crease
+        Vec3d outward;           ///< the sum of its corners' normals, of those at creases, as a unit vector
+        double before;           ///< twice its area, as far as it faced outward
+        bool isNew = false;      ///< an edge of it was turned since triangles were compared
+        bool hasTurned = false;  ///< an edge of it was turned once
+    };
+
+    TouchedTriangles(const Mesh& mesh, const FlatMesh& flat) : mesh_(mesh), flat_(flat) {}
+    /// Lists the triangles with a vertex that has a number other than `none`; O(n) in all triangles.
+    void find(const PageVector<uint32_t>& moveOf);
+
+    /// Null for a triangle that isn't in the list.
+    Touched* of(uint32_t triangle);
+    /// Those that face away from where they faced, by more than rounding.
+    std::vector<uint32_t> folded() const;
+    /// Whether a triangle has no area to speak of that faces outward.
+    bool isFlat(const Touched& touched) const;
+
+    auto begin() { return touched_.begin(); }
+    auto end() { return touched_.end(); }
+
+private:
+    double facing(const Touched& touched) const;
+    double longestSquare(uint32_t triangle) const;
+
+    const Mesh& mesh_;
+    const FlatMesh& flat_;
+    std::vector<Touched> touched_;
+};
+
+}  // namespace sgm::mesh
