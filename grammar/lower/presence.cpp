@@ -1,5 +1,6 @@
 #include "grammar/lower/presence.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -7,9 +8,15 @@
 #include "grammar/lower/scope_lines.h"
 
 namespace sgm::lower {
+namespace {
 
-Presence::Presence(const mesh::Mesh& mesh, std::span<const Extent> extents, std::span<const Vec3f> points, float cell_m)
-    : perMetre_(4 / cell_m) {
+constexpr int fewestParts = 4, mostParts = 64;  ///< of a side of a triangle that is sampled
+
+}  // namespace
+
+Presence::Presence(const mesh::Mesh& mesh, std::span<const Asked> asked, std::span<const Vec3f> points, float cell_m) {
+    using Extent = Asked::Extent;
+    for (const Asked& part : asked) perMetre_.push_back(part.extent == Extent::Nothing ? 0 : 1 / part.reach_m);
     constexpr OriginId any = 0;
     const float perMetre = 0.5f / cell_m;  // of cells of twice the edge: the eight around a point reach a cell far
     const auto keyAt = [&](Vec3f p) { return keyOf(cellOf(p, perMetre), any); };
@@ -25,27 +32,30 @@ Presence::Presence(const mesh::Mesh& mesh, std::span<const Extent> extents, std:
     const std::vector<const Vec3f*> positions = positionsOf(mesh);
     for (const mesh::Chunk& c : mesh.chunks)
         for (size_t t = 0; t < c.origins.size(); ++t) {
-            if (extents[c.origins[t]] == Extent::Nothing) continue;
+            const Extent extent = asked[c.origins[t]].extent;
+            if (extent == Extent::Nothing) continue;
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
             const Vec3f p = *positions[corners[0]], q = *positions[corners[1]], r = *positions[corners[2]];
-            if (extents[c.origins[t]] == Extent::All || around.contains(keyAt((p + q + r) * (1.0f / 3))))
+            if (extent == Extent::All || around.contains(keyAt((p + q + r) * (1.0f / 3))))
                 addTriangle(p, q, r, c.origins[t]);
         }
 }
 
 void Presence::addTriangle(Vec3f p, Vec3f q, Vec3f r, OriginId part) {
-    constexpr int parts = 4;  // of each side
+    const float longest = std::sqrt(std::max({dot(q - p, q - p), dot(r - q, r - q), dot(p - r, p - r)}));
+    const int parts = std::clamp(static_cast<int>(std::ceil(longest * perMetre_[part])), fewestParts, mostParts);
     for (int u = 0; u <= parts; ++u)
         for (int v = 0; u + v <= parts; ++v) {
-            const Vec3f at = p + (q - p) * (static_cast<float>(u) / parts) + (r - p) * (static_cast<float>(v) / parts);
-            const uint64_t key = keyOf(cellOf(at, perMetre_), part);
+            const Vec3f at = p + (q - p) * (static_cast<float>(u) / static_cast<float>(parts)) +
+                             (r - p) * (static_cast<float>(v) / static_cast<float>(parts));
+            const uint64_t key = keyOf(cellOf(at, part), part);
             if (key != last_) cells_.insert(key);
             last_ = key;
         }
 }
 
 bool Presence::isNear(Vec3f p, OriginId part) const {
-    const Vec3i cell = cellOf(p, perMetre_);
+    const Vec3i cell = cellOf(p, part);
     if (cells_.contains(keyOf(cell, part))) return true;
     for (int z = -1; z <= 1; ++z)
         for (int y = -1; y <= 1; ++y)

@@ -13,15 +13,18 @@
 
 namespace sgm::lower {
 
-/// Quarters of the mesh's cells that hold triangles of thin parts.
+/// Small cells that hold triangles of thin parts.
 class Presence {
 public:
-    /// How much of a part is asked for.
-    enum class Extent : uint8_t { Nothing, NearPoints, All };
-    /// O(triangles of those parts + points). Of parts that are asked about near points only the triangles within a cell
-    /// of one of `points` count. Cells in metres.
-    Presence(const mesh::Mesh& mesh, std::span<const Extent> extents, std::span<const Vec3f> points, float cell_m);
-    /// Whether a triangle of the part lies within a quarter of a cell to a half.
+    /// What is asked of a part.
+    struct Asked {
+        enum class Extent : uint8_t { Nothing, NearPoints, All } extent = Extent::Nothing;
+        float reach_m = 0;  ///< how near a triangle has to be, to twice as much
+    };
+    /// O(triangles of those parts + points). `asked` is by part. Of parts that are asked about near points only the
+    /// triangles within a cell of one of `points` count.
+    Presence(const mesh::Mesh& mesh, std::span<const Asked> asked, std::span<const Vec3f> points, float cell_m);
+    /// Whether a triangle of the part lies within its reach, to twice that.
     bool isNear(Vec3f p, OriginId part) const;
     /// Whether triangles of the part lie along every line through its scope, which is thinner than a cell of `cell_m`
     /// there: then nothing of it is missing, whatever the field says.
@@ -29,10 +32,11 @@ public:
 
 private:
     void addTriangle(Vec3f p, Vec3f q, Vec3f r, OriginId part);
+    Vec3i cellOf(Vec3f p, OriginId part) const { return cellOf(p, perMetre_[part]); }
     static Vec3i cellOf(Vec3f p, float perMetre);
     static uint64_t keyOf(Vec3i cell, OriginId part);
 
-    const float perMetre_;
+    std::vector<float> perMetre_;  ///< cells of a reach, by part
     NumberSet cells_;
     uint64_t last_ = 0;  ///< added to `cells_`
 };

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
 #include "grammar/lower/local_tapes.h"
 #include "grammar/lower/mesh_positions.h"
+#include "grammar/lower/missing_sections.h"
 #include "grammar/lower/presence.h"
 #include "grammar/lower/scope_lines.h"
 #include "grammar/lower/thin_sections.h"
@@ -37,6 +39,7 @@ struct FacePoints {
 };
 constexpr FacePoints roughly{16, 64}, closely{256, 1024};
 constexpr double leastRoughly = 0.7;        ///< share of a face that has to be free to be looked at closely
+constexpr float tornShare = 0.125f;         ///< of a round part's thickness: its mesh is so near, or twice as much
 constexpr double probed = 1.1 * lineReach;  ///< of a scope: where its part is looked for
 
 /// A thin part, and the share of its surface that the mesh lacks; 0 where it is buried.
@@ -272,75 +275,58 @@ void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Pres
         });
 }
 
-/// Boxes around those of boxes, one a line, that lie near each other: no more than two spacings of the lines apart
-/// along the axes across theirs.
-void gather(std::span<Box3d> boxes, int axis, double spacing_m, std::vector<Box3d>& gathered) {
-    for (const int along : {(axis + 1) % 3, (axis + 2) % 3}) {
-        std::sort(boxes.begin(), boxes.end(),
-                  [&](const Box3d& a, const Box3d& b) { return a.lo[along] < b.lo[along]; });
-        for (size_t i = 1; i < boxes.size(); ++i) {
-            if (boxes[i].lo[along] - boxes[i - 1].hi[along] <= 2 * spacing_m) continue;
-            gather(boxes.first(i), axis, spacing_m, gathered);
-            gather(boxes.subspan(i), axis, spacing_m, gathered);
-            return;
-        }
-    }
-    Box3d all;
-    for (const Box3d& box : boxes) all = hull(all, box);
-    gathered.push_back(all);
-}
-
-/// The wall or gap at a section where the mesh has neither of its surfaces on more than a tenth of the lines.
-std::optional<ThinPart> lackedAt(const ThinSection& section, const Presence& presence, double cell_m) {
-    if (section.lines.size() < fewestCrossings) return std::nullopt;
-    const int axis = section.face / 2;
-    const Mat3 local = section.scope.axes.transposed();
-    std::vector<double> thicknesses_m;
-    std::vector<Box3d> boxes, gathered;
-    for (const ThinSection::Line& line : section.lines) {
-        const auto isNear = [&](const ThinSection::Crossing& c) { return presence.isNear(c.at, c.owner); };
-        if (isNear(line.ends[0]) || isNear(line.ends[1])) continue;
-        thicknesses_m.push_back(line.thickness_m);
-        Box3d box;
-        for (const auto& end : line.ends) box = hull(box, local * (end.at.as<double>() - section.scope.centre));
-        boxes.push_back(box);
-    }
-    const double missing = static_cast<double>(boxes.size()) / static_cast<double>(section.lines.size());
-    if (!(missing > leastMissing)) return std::nullopt;
-    const auto middle = thicknesses_m.begin() + static_cast<ptrdiff_t>(thicknesses_m.size() / 2);
-    std::nth_element(thicknesses_m.begin(), middle, thicknesses_m.end());
-    ThinPart lacked{section.isGap ? ThinPart::Kind::Gap : ThinPart::Kind::Wall,
-                    section.part,
-                    section.face,
-                    *middle,
-                    std::min(*middle * turnOf(section.scope, axis), cell_m / 2),
-                    missing,
-                    {}};
-    gather(boxes, axis, section.spacing_m, gathered);
-    for (const Box3d& box : gathered) {
-        derive::Scope place{section.scope.centre + section.scope.axes * box.centre(), section.scope.axes, box.size()};
-        place.size[(axis + 1) % 3] += section.spacing_m, place.size[(axis + 2) % 3] += section.spacing_m;
-        lacked.places.push_back(place);
-    }
-    return lacked;
-}
-
 /// Knows where the mesh has the parts, and what is at the sections.
 Presence presenceOf(const mesh::Mesh& mesh, std::span<const Candidate> thin, std::span<const ThinSection> sections,
                     size_t partCount, float cell_m) {
-    std::vector<Presence::Extent> extents(partCount, Presence::Extent::Nothing);
+    using Extent = Presence::Asked::Extent;
+    std::vector<Presence::Asked> asked(partCount);
+    const float quarter_m = cell_m / 4;
     std::vector<Vec3f> points;
     for (const ThinSection& section : sections)
         for (const ThinSection::Line& line : section.lines)
             for (const ThinSection::Crossing& end : line.ends) {
-                extents[end.owner] = Presence::Extent::NearPoints;
+                asked[end.owner] = {Extent::NearPoints, quarter_m};
                 points.push_back(end.at);
             }
-    for (const Candidate& c : thin) extents[c.part] = Presence::Extent::All;
-    return Presence(mesh, extents, points, cell_m);
+    for (const Candidate& c : thin) asked[c.part] = {Extent::All, quarter_m};
+    return Presence(mesh, asked, points, cell_m);
+}
+
+std::vector<ThinPart> lackedOf(std::span<const Candidate> thin) {
+    std::vector<ThinPart> found;
+    for (const Candidate& c : thin)
+        if (c.missing > 0)
+            found.push_back({ThinPart::Kind::Part,
+                             c.part,
+                             -1,
+                             minComponent(c.scope.size),
+                             cellThatHolds(c.scope),
+                             c.missing,
+                             {c.scope}});
+    return found;
 }
 
 }  // namespace
+
+Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation, const Model& model,
+                                            const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m, int threads,
+                                            Progress* progress, const std::vector<ThinPart>* among) {
+    std::vector<Candidate> thin = thinParts(derivation, model, static_cast<double>(cell_m), among);
+    std::erase_if(thin, [&](const Candidate& c) {
+        const derive::SolidValue& solid = derivation.tree.solids[derivation.tree.shapes[model.shapeOf[c.part]].solid];
+        return c.isBox ? c.plateAxis >= 0 : !solid.primitive || solid.primitive->plan != field::PlanUse::None;
+    });
+    if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
+    std::vector<Presence::Asked> asked(model.shapeOf.size());
+    for (const Candidate& c : thin)
+        asked[c.part] = {
+            Presence::Asked::Extent::All,
+            std::clamp(tornShare * static_cast<float>(minComponent(c.scope.size)), cell_m / 32, cell_m / 4)};
+    const Presence presence(mesh, asked, {}, cell_m);
+    probeParts(thin, tape, presence, cell_m, threads, progress);
+    if (cancelled(progress)) return cancelledError();
+    return lackedOf(thin);
+}
 
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
@@ -356,19 +342,10 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     measureFacing(mesh, thin, model.shapeOf.size());
     probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();
-    std::vector<ThinPart> found = std::move(*walls);
-    for (const Candidate& c : thin) {
-        if (!(c.missing > 0)) continue;
-        found.push_back({ThinPart::Kind::Part,
-                         c.part,
-                         -1,
-                         minComponent(c.scope.size),
-                         cellThatHolds(c.scope),
-                         c.missing,
-                         {c.scope}});
-    }
+    std::vector<ThinPart> found = lackedOf(thin);
+    std::move(walls->begin(), walls->end(), std::back_inserter(found));
     for (const ThinSection& section : *sections)
-        if (auto lacked = lackedAt(section, presence, cell)) found.push_back(std::move(*lacked));
+        if (auto lacked = missingAt(section, presence, cell)) found.push_back(std::move(*lacked));
     std::sort(found.begin(), found.end(), [](const ThinPart& a, const ThinPart& b) {
         return std::pair(a.part, a.face) < std::pair(b.part, b.face);
     });

@@ -31,31 +31,45 @@ public:
 
     /// Cells around what the mesh lacks are meshed anew, and again with smaller ones while some of it is still missing:
     /// within its scope a part may be thinner. What isn't missing stays so, for smaller cells have the larger ones'
-    /// corners.
+    /// corners. What the mesh has, but torn, comes last: it may use what is left of the triangles.
     Result<std::vector<lower::ThinPart>> run() {
+        auto missing = hold(lower::findMissingParts);
+        if (!missing.ok()) return missing;
+        const double seconds = halvingSeconds_;
+        if (const auto torn = hold(lower::findTornParts); !torn.ok()) return torn;
+        if (halvingSeconds_ > seconds && !missing->empty()) missing = find(lower::findMissingParts, &*missing);
+        context_.stages.emplace_back("thin parts", findingSeconds_);
+        if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
+        return missing;
+    }
+
+private:
+    using Finder = decltype(lower::findMissingParts);
+
+    Result<std::vector<lower::ThinPart>> find(Finder& finder, const std::vector<lower::ThinPart>* among) {
+        const Stopwatch finding;
+        auto found = finder(model_.derivation, *model_.lowered, model_.tape, mesh_, grid_.cell_m, context_.threads,
+                            context_.progress, among);
+        findingSeconds_ += finding.seconds();
+        return found;
+    }
+
+    /// Halves cells while that makes what is found fewer. Returns what is left.
+    Result<std::vector<lower::ThinPart>> hold(Finder& finder) {
         std::optional<std::vector<lower::ThinPart>> before;
         for (;;) {
-            const Stopwatch finding;
-            auto missing = lower::findMissingParts(model_.derivation, *model_.lowered, model_.tape, mesh_, grid_.cell_m,
-                                                   context_.threads, context_.progress, before ? &*before : nullptr);
-            findingSeconds_ += finding.seconds();
-            if (!missing.ok()) return missing;
-            const HalvedCells cells = cellsAround(*missing);
+            auto found = find(finder, before ? &*before : nullptr);
+            if (!found.ok()) return found;
+            const HalvedCells cells = cellsAround(*found);
             bool isRefined = false;
             for (int halvings = 1; halvings <= most_; ++halvings)
                 if (const Status s = refine(cells[static_cast<size_t>(halvings)], halvings, isRefined); !s.ok())
                     return s.error();
-            if (isRefined) {
-                before = std::move(*missing);
-                continue;
-            }
-            context_.stages.emplace_back("thin parts", findingSeconds_);
-            if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
-            return missing;
+            if (!isRefined) return found;
+            before = std::move(*found);
         }
     }
 
-private:
     HalvedCells cellsAround(const std::vector<lower::ThinPart>& missing) {
         HalvedCells cells;
         double cellCount = 0;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "grammar/pipeline/incremental.h"
@@ -48,6 +49,36 @@ TEST(Refining, ThinPartsOfTheTestScenesAreThere) {
         EXPECT_TRUE(fine.missing->empty()) << name << ' ' << fine.missing->size();
         const auto word = mesh::validate(fine.mesh);
         EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects) << name;
+    }
+}
+
+/// Two of 4,164 halved cells didn't fit those beside them: all cells that they were connected with stayed as they were,
+/// and five bars of windows were missing. The cells beside them are halved too.
+TEST(Refining, CellsThatDontFitTakeTheirNeighboursWithThem) {
+    std::ostringstream text;
+    text << std::ifstream("examples/buildings/warehouse.sgm").rdbuf();
+    Context context{nullptr, 2};
+    const Model model = modelOf(std::regex_replace(text.str(), std::regex(" texture [^\n]*"), ""), context);
+    EXPECT_TRUE(meshed(model, 64, 3).missing->empty());
+}
+
+/// A ring and a rod about as thick as a cell: the mesh had some of each everywhere, but torn.
+TEST(Refining, RoundPartsAndBarsAreWhole) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\n"
+        "start S -> cube size (60, 2, 60) + F size (.9m, 3m, .9m) at +y\n"
+        "rule F -> cube size (20%, 100%, 20%) + sphere size (.45m) move (0, .2m, 0)\n"
+        "          + torus(.2) turn (90deg, 0deg, 0deg) size (.9m, .2m, .9m) move (0, 1.2m, 0)\n",
+        context);
+    const auto torn = [&](const MeshedModel& made) {
+        return lower::findTornParts(model.derivation, *model.lowered, model.tape, made.mesh, made.grid.cell_m, 2,
+                                    nullptr)
+            ->size();
+    };
+    for (const int resolution : {200, 256, 300}) {
+        EXPECT_GT(torn(meshed(model, resolution, 0)), 0u) << resolution;
+        EXPECT_EQ(torn(meshed(model, resolution, 3)), 0u) << resolution;
     }
 }
 
