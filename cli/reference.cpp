@@ -2,16 +2,19 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/commands.h"
 #include "grammar/language/textmate.h"
 #include "grammar/language/tree_sitter.h"
 #include "grammar/operations/operations.h"
+#include "grammar/pipeline/files.h"
 #include "grammar/rules/functions.h"
 #include "grammar/rules/roads.h"
 #include "grammar/rules/type.h"
 #include "grammar/syntax/operations.h"
+#include "grammar/syntax/parser.h"
 #include "modeler/export/exporter.h"
 #include "modeler/field/primitives.h"
 
@@ -146,6 +149,37 @@ std::string exportersPage() {
     return page;
 }
 
+/// Names in backticks, each once, in their order.
+std::string namesOf(const std::vector<std::string>& names) {
+    std::string text;
+    for (size_t i = 0; i < names.size(); ++i)
+        if (std::find(names.begin(), names.begin() + static_cast<ptrdiff_t>(i), names[i]) ==
+            names.begin() + static_cast<ptrdiff_t>(i))
+            text += fmt::format("{}`{}`", text.empty() ? "" : " ", names[i]);
+    return text;
+}
+
+/// What the files of `std/` define.
+std::string libraryPage() {
+    std::string page =
+        "\n## Standard library\n\nThe names that `use \"std/…\"` brings. A grammar that uses a file can't give "
+        "them to parameters, terminals or rules of its own.\n\n| file | uses | rules | terminals | parameters "
+        "|\n|---|---|---|---|---|\n";
+    for (const auto& [name, source] : pipeline::standardFiles()) {
+        syntax::Diagnostics ignored;
+        const syntax::Ast ast = syntax::parse(source, operations::table(), ignored);
+        std::vector<std::string> uses, rules, terminals, params;
+        for (const auto& d : ast.uses) uses.push_back(d.file.text);
+        for (const auto& d : ast.rules) rules.push_back(d.symbol.text);
+        for (const auto& d : ast.terminals)
+            for (const syntax::Name& n : d.names) terminals.push_back(n.text);
+        for (const auto& d : ast.params) params.push_back(d.name.text);
+        page += fmt::format("| `{}` | {} | {} | {} | {} |\n", name, namesOf(uses), namesOf(rules), namesOf(terminals),
+                            namesOf(params));
+    }
+    return page;
+}
+
 }  // namespace
 
 void addReference(CLI::App& app, int& exitCode) {
@@ -160,8 +194,9 @@ void addReference(CLI::App& app, int& exitCode) {
             fmt::print("{}", *textMate ? language::textMateGrammar() : language::treeSitterGrammar());
             return;
         }
-        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}{}{}",
-                   operationsPage(), plansPage(), roadsPage(), primitivesPage(), functionsPage(), exportersPage());
+        fmt::print("# Reference\n\nPrinted by `sgm reference` from the program's own tables.\n\n{}{}{}{}{}{}{}",
+                   operationsPage(), plansPage(), roadsPage(), primitivesPage(), functionsPage(), exportersPage(),
+                   libraryPage());
         exitCode = 0;
     });
 }

@@ -57,6 +57,7 @@ struct NameTable {
 struct Declared {
     using Spans = std::map<std::string, SourceSpan>;
     Spans params, lets, terminals, rules, starts, styles, derives, lsystems, maps, roads;
+    Spans ruledSymbols;  ///< the first rule for each symbol in the last file that has one
 };
 
 /// What is known of parameters beyond their declarations.

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "grammar/rules/declarations.h"
+#include "grammar/rules/lookup.h"
 #include "grammar/rules/words.h"
 
 namespace sgm::rules {
@@ -107,9 +108,34 @@ void collectNames(CheckContext& ctx, const syntax::Body& body) {
         }
 }
 
+/// Rules of two files for one symbol: drawn by seed or hidden by a guard, although neither file knows of the other's.
+void checkOneFile(CheckContext& ctx, const syntax::Name& symbol) {
+    const auto [entry, fresh] = ctx.seen.ruledSymbols.emplace(symbol.text, symbol.span);
+    const SourceSpan first = entry->second;
+    if (fresh || first.source == symbol.span.source) return;
+    entry->second = symbol.span;
+    const int line = first.source->place(first.begin).line;
+    std::string hint = fmt::format("give this shape another name, as 'My{}'", symbol.text);
+    if (versionOf(ctx.grammar, symbol.span) >= 2)
+        ctx.diagnostics.error(symbol.span,
+                              fmt::format("there is already a rule for '{}' in {}, line {}: the rules of two files for "
+                                          "one shape would be alternatives",
+                                          symbol.text, first.source->name(), line),
+                              std::move(hint));
+    else
+        ctx.diagnostics.warning(symbol.span,
+                                fmt::format("there is already a rule for '{}' in {}, line {}, of which this one is "
+                                            "another alternative: an error in 'grammar 2'",
+                                            symbol.text, first.source->name(), line),
+                                std::move(hint));
+}
+
 void declareRule(CheckContext& ctx, const syntax::RuleDecl& decl) {
     if (!decl.name.empty()) isDeclaredTwice(ctx, ctx.seen.rules, decl.name, "rule");
-    if (isNonTerminal(decl.symbol.text)) ctx.names.ruled.insert(declareSymbol(ctx, decl.symbol));
+    if (isNonTerminal(decl.symbol.text)) {
+        checkOneFile(ctx, decl.symbol);
+        ctx.names.ruled.insert(declareSymbol(ctx, decl.symbol));
+    }
     collectNames(ctx, decl.body);
     if (decl.finally_) collectNames(ctx, *decl.finally_);
 }

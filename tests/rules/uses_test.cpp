@@ -14,12 +14,27 @@ TEST(Uses, MergeDeclarationsBeforeTheirUser) {
                 {{"a.sgm", "grammar 1\nuse \"b.sgm\"\nrule Cell when scope.x > 9 -> nil\n"},
                  {"b.sgm", "grammar 1\nterminal wall\n"}});
     ASSERT_TRUE(c.grammar) << c.messages();
-    EXPECT_EQ(c.messages(), "");
+    EXPECT_EQ(c.messages(),
+              "warning: there is already a rule for 'Cell' in a.sgm, line 3, of which this one is another alternative: "
+              "an error in 'grammar 2'\n");
     ASSERT_EQ(c.grammar->sources.size(), 3u);
     EXPECT_EQ(c.grammar->sources[0]->name(), "test.sgm");
     EXPECT_EQ(c.grammar->rules.at(0).name, "Cell#1");
     EXPECT_EQ(c.grammar->rules[0].span.source->name(), "a.sgm");
     EXPECT_EQ(c.grammar->symbols.at(0).name, "wall") << "b.sgm is read once";
+}
+
+TEST(Uses, RefuseRulesOfTwoFilesForOneSymbol) {
+    const std::map<std::string, std::string> files{
+        {"a.sgm", "grammar 2\nrule Court -> cube, Yard\nrule Court -> sphere\n"}};
+    const auto said = [&](const std::string& rules) {
+        return checked("grammar 2\nuse \"a.sgm\"\nstart S -> Court\n" + rules, files).messages();
+    };
+    EXPECT_EQ(said("rule Court -> cube\nrule Court -> cone\nrule Yard -> nil\n"),
+              "there is already a rule for 'Court' in a.sgm, line 2: the rules of two files for one shape would be "
+              "alternatives\n")
+        << "once a file";
+    EXPECT_EQ(said("rule Yard -> cube\n"), "") << "what a file leaves without a rule is another's to fill";
 }
 
 TEST(Uses, BeginWithTheFilesOwnStart) {
