@@ -112,7 +112,15 @@ std::shared_ptr<Body> bodyOf(Expr solid) {
 /// How often a block repeats: *, +, 3 or (n + 1).
 void readTimes(Cursor& cursor, SourceSpan braces, Case& part) {
     const bool glued = cursor.peek().glued;
-    if (cursor.accept("*", Token::Role::Suffix)) return;
+    if (cursor.accept("*", Token::Role::Suffix)) {
+        if (!cursor.at(Token::Kind::Number) && !cursor.at("(")) return;
+        const Token times = cursor.peek();
+        part.times = readArgument(cursor);
+        const SourceSpan said = cursor.since(times.begin);
+        cursor.complain(said, "a number can't follow '}*', which repeats as often as it fits",
+                        "write " + quoted("{ … }" + plain(said.text())) + " for so many times");
+        return;
+    }
     if (cursor.accept("+", Token::Role::Suffix)) {
         part.atLeastOnce = true;
     } else if (glued && (cursor.at(Token::Kind::Number) || cursor.at("("))) {
@@ -206,8 +214,10 @@ void readShape(Cursor& cursor, Element& element) {
 
 void readControl(Cursor& cursor, Element& element) {
     if (element.op != Operator::None) {
+        const std::string op = element.op == Operator::Morph ? "morph" : plain(cursor.text(cursor.previous(1)));
         cursor.complain(cursor.span(cursor.peek()), cursor.found() + " takes no operator before it",
-                        "put the operator before each shape in its block, or group it with ( )");
+                        "write it within the braces, before each shape, as in " + quoted("{ " + op + " cube … }") +
+                            ", or group all of it: " + quoted(op + " (" + plain(cursor.peekText()) + " … { … })"));
     }
     const std::string_view word = cursor.text(cursor.take());
     if (word == "let") {

@@ -160,6 +160,32 @@ std::optional<Hint> withoutWord(const Cursor& cursor, std::string_view message) 
     return {};
 }
 
+/// Words and forms of other shape grammars: `comp(f) { … }`, `case x > 5: …`, `30%: …` as a body, `size 10 10 10`.
+std::optional<Hint> ofOtherGrammars(const Cursor& cursor, std::string_view message) {
+    const Token token = cursor.peek(), last = cursor.previous(1);
+    const std::string found = quoted(cursor.text(token));
+    if (cursor.at("{") && cursor.text(last) == ")" && calledBefore(cursor) == "comp")
+        return Hint{cursor.span(token), "there is no 'comp'", foreignAttributeHint("comp")};
+    if (cursor.text(last) == "case" && message.ends_with("can't follow a shape"))
+        return Hint{cursor.span(last), "there is no 'case'",
+                    "a rule's condition stands before '->': 'rule B when … -> …'; " + std::string(ifMend)};
+    if (cursor.at("is") && message.starts_with("expected '->'"))
+        return Hint{cursor.span(token), "there is no 'is'", "write '=='"};
+    if (cursor.text(last) == "->" && token.kind == Token::Kind::Number && cursor.at(":", 1))
+        return Hint{cursor.span(token), "expected a shape, found " + found,
+                    "write 'choose { 3: this | 7: that }', or two rules with 'weight 3' and 'weight 7'"};
+    const std::string_view attribute = cursor.text(cursor.previous(2));
+    if (token.kind == Token::Kind::Number && last.kind == Token::Kind::Number && !cursor.at(":", 1) &&
+        (attribute == "size" || attribute == "move" || attribute == "turn")) {
+        const std::string third(cursor.at(Token::Kind::Number, 1) ? cursor.peekText(1) : "…");
+        return Hint{cursor.span(token), found + " can't follow a shape",
+                    "a vector stands in parentheses: write " +
+                        quoted(std::string(attribute) + " (" + std::string(cursor.text(last)) + ", " +
+                               std::string(cursor.text(token)) + ", " + third + ")")};
+    }
+    return {};
+}
+
 Hint unknownCharacter(const Cursor& cursor) {
     const std::string_view bytes = cursor.peekText();
     Hint hint{cursor.span(cursor.peek()), "unexpected character " + quoted(bytes), {}};
@@ -178,9 +204,8 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
     const std::string_view text = cursor.text(token), before = cursor.text(cursor.previous(1));
     if (token.kind == Token::Kind::Unknown) return unknownCharacter(cursor);
     if (auto beside = besideNumber(cursor, message)) return beside;
+    if (auto other = ofOtherGrammars(cursor, message)) return other;
     if (auto without = withoutWord(cursor, message)) return without;
-    if (text == "is" && message.starts_with("expected '->'"))
-        return Hint{cursor.span(token), "there is no 'is'", "write '=='"};
     if (text == "+" && message.starts_with("a number has no '+'") && cursor.peekText(1).size() == 1 &&
         cursor.at(Token::Kind::Word, 1))
         return Hint{cursor.span(token), "unknown joint " + quoted("+" + std::string(cursor.peekText(1))),
