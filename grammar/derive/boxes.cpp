@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "grammar/derive/expressions.h"
+#include "modeler/field/plan_solids.h"
+
 namespace sgm::derive {
 
 double reach(const Scope& s, Vec3d axis) {
@@ -17,9 +20,26 @@ Box3d boxOf(const Scope& s, double share) {
 
 namespace {
 
+double standsOut_m(const SolidValue& solid, double height_m) {
+    const bool isOverPlan = solid.primitive && solid.primitive->plan != field::PlanUse::None;
+    double out_m = isOverPlan ? field::standsOut_m(*solid.primitive, argumentNumbers(solid), height_m) : 0;
+    for (const SolidValue& part : solid.parts) out_m = std::max(out_m, standsOut_m(part, height_m));
+    return out_m;
+}
+
 bool isUpright(const Scope& s) { return s.axes == Mat3{}; }
 
 }  // namespace
+
+Scope outerScope(const ShapeTree& tree, ShapeId shape) {
+    Scope scope = tree.shapes[shape].scope;
+    if (const SolidValue* solid = tree.solidOf(shape)) {
+        const double out_m = standsOut_m(*solid, scope.size.y);
+        scope.size.x += 2 * out_m;
+        scope.size.z += 2 * out_m;
+    }
+    return scope;
+}
 
 double penetration(const Scope& a, const Scope& b) {
     const Vec3d gap = b.centre - a.centre;
@@ -45,7 +65,7 @@ std::vector<Boxed> solidsInOrder(const ShapeTree& tree, int& axis) {
     Vec3d sizes;
     for (ShapeId s = 0; s < tree.shapes.size(); ++s) {
         if (tree.shapes[s].solid == none) continue;
-        boxes.push_back({boxOf(tree.shapes[s].scope), s});
+        boxes.push_back({boxOf(outerScope(tree, s)), s});
         all = hull(all, boxes.back().box);
         sizes += boxes.back().box.size();
     }

@@ -16,6 +16,8 @@ inline constexpr double boxSlack_m = 1e-4;
 double reach(const Scope& scope, Vec3d axis);
 /// What `share` times the box takes up along x, y and z about its middle, metres.
 Box3d boxOf(const Scope& scope, double share = 1);
+/// The scope of a solid, wider by what stands out of it: mouldings, eaves. A shape without a solid has its own.
+Scope outerScope(const ShapeTree& tree, ShapeId shape);
 /// The depth by which two oriented boxes overlap (separating axes), metres; negative when they are apart.
 double penetration(const Scope& a, const Scope& b);
 
@@ -25,6 +27,7 @@ struct Boxed {
     ShapeId shape;
 };
 /// All shapes with a solid, by their least coordinate along the axis on which they share least; `axis` is set to it.
+/// With what stands out of their scopes (outerScope).
 std::vector<Boxed> solidsInOrder(const ShapeTree& tree, int& axis);
 
 /// Calls f(a, b) for every pair of solids whose extents share more than −margin along all axes, until f gives false.

@@ -34,7 +34,7 @@ std::vector<uint32_t> touchingGroups(const ShapeTree& tree) {
     std::iota(parent.begin(), parent.end(), 0u);
     forPairs(tree, boxSlack_m, [&](ShapeId a, ShapeId b) {
         if (!adds[a] || !adds[b] || rootOf(parent, a) == rootOf(parent, b)) return true;
-        if (penetration(tree.shapes[a].scope, tree.shapes[b].scope) >= -boxSlack_m)
+        if (penetration(outerScope(tree, a), outerScope(tree, b)) >= -boxSlack_m)
             parent[rootOf(parent, a)] = rootOf(parent, b);
         return true;
     });

@@ -83,7 +83,7 @@ private:
     bool meet() const {
         for (const ShapeId a : cutting_)
             for (const ShapeId b : standing_)
-                if (penetration(tree_.shapes[a].scope, tree_.shapes[b].scope) >
+                if (penetration(outerScope(tree_, a), outerScope(tree_, b)) >
                     1e-9 * maxComponent(tree_.shapes[b].scope.size))
                     return true;  // rounding
         return false;

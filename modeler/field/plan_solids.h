@@ -18,6 +18,10 @@ namespace sgm::field {
 double heightOver(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
                   std::span<const Argument> arguments);
 
+/// How far, metres, a row over a footprint stands out of the edges below it: the `out` of a moulding, the eaves of a
+/// roof, the top of a block that leans outward. `arguments` need their values alone; `height_m` is that of the scope.
+double standsOut_m(const Primitive& row, std::span<const Argument> arguments, double height_m);
+
 /// What is wrong with the numbers of a row as a whole: the sentence of a moulding whose profile crosses itself; ""
 /// where nothing is.
 std::string profileFault(const Primitive& row, std::span<const Argument> arguments);

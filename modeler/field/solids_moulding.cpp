@@ -92,6 +92,23 @@ std::string profileFault(const Primitive& row, std::span<const Argument> argumen
     return fault ? "profile of the moulding: " + plan::sentenceOf(*fault, section) : std::string();
 }
 
+double standsOut_m(const Primitive& row, std::span<const Argument> arguments, double height_m) {
+    if (row.plan == PlanUse::None) return 0;
+    double out_m = 0, fascia_m = 1;
+    if (row.name == "moulding")
+        for (const Vec2 p : pointsOf(arguments)) out_m = std::max(out_m, p.x);
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        const std::string_view name = row.parameters[i].name;
+        const double value = arguments[i].value[0];
+        if (name == "out" || name == "overhang") out_m = std::max(out_m, value);
+        if (name == "lean" && value < 0) out_m = std::max(out_m, height_m * std::tan(-value));
+        if (name == "fascia") fascia_m = value;
+    }
+    // The curve of a dome comes to nothing at its eaves: only a board stands out there.
+    const bool isCurved = row.name == "domeRoof" || row.name == "bellRoof";
+    return isCurved && fascia_m <= 0 ? 0 : out_m;
+}
+
 namespace solids {
 
 Field taperBlock(const PrimitiveInput& in) {

@@ -60,5 +60,20 @@ TEST(Support, WhatStandsOnTheGroundNeedsNoNeighbour) {
     EXPECT_EQ(derived("grammar 1\nstart A -> cube size 2, cube size 2 move (9, 1, 0)\n").floating(), 1u);
 }
 
+TEST(Support, WhatStandsOutOfItsScopeHolds) {
+    const auto floating = [](const std::string& support) {
+        return derived("grammar 2\nstart S -> block size (4, 4, 4) + " + support +
+                       " at +y + around 4 radius 2.3m { cube size (.1m, 1m, .1m) move (0, 3m, 0) }\n")
+            .floating();
+    };
+    EXPECT_EQ(floating("cube size (4, .5, 4)"), 4u);
+    EXPECT_EQ(floating("corniceMoulding(.5m) size (4, .5, 4)"), 0u);
+    EXPECT_EQ(floating("corniceMoulding(.2m) size (4, .5, 4)"), 4u);
+    EXPECT_EQ(floating("moulding((-.1, 0), (.5, 0), (.5, .5), (-.1, .5)) size (4, .5, 4)"), 0u);
+    EXPECT_EQ(floating("taperBlock(-45deg) size (4, .5, 4)"), 0u);
+    EXPECT_EQ(floating("domeRoof(overhang: .5m, fascia: .2m) size (4, .5, 4)"), 0u);
+    EXPECT_EQ(floating("domeRoof(overhang: .5m) size (4, .5, 4)"), 4u) << "a dome comes to nothing at its eaves";
+}
+
 }  // namespace
 }  // namespace sgm
