@@ -122,9 +122,16 @@ void applySetback(AttributeContext& context, const Attribute& attribute) {
 }
 
 void applyCourt(AttributeContext& context, const Attribute& attribute) {
-    auto court = plan::court(context.footprint(), context.number(attribute.args[0]));
-    if (!court.ok()) return context.fail(court.error().message, attribute.span);
-    context.setFootprint(std::move(*court), attribute.span);
+    const double wing_m = context.number(attribute.args[0]);
+    auto court = plan::court(context.footprint(), wing_m);
+    derive::select(*context.place.builder, attribute.span, court.has_value(), [&] {
+        const Vec3d size = context.out.scope.size;
+        return derive::Explanation{
+            fmt::format("wings of {:.4g} m leave no court in a plan of {:.3g} m by {:.3g} m, which stays whole", wing_m,
+                        size.x, size.z),
+            "make the wings narrower, or begin with a larger plan"};
+    });
+    if (court) context.setFootprint(std::move(*court), attribute.span);
 }
 
 void applyRectify(AttributeContext& context, const Attribute& attribute) {
@@ -188,7 +195,9 @@ constinit const Operation setback{
 
 constinit const Operation court{
     .name = "court",
-    .doc = "Cuts a court out of the footprint that leaves wings of one depth; its edges are called court.",
+    .doc =
+        "Cuts a court out of the footprint that leaves wings of one depth; its edges are called court. A plan in which "
+        "the wings leave none stays whole.",
     .example = "footprint rect(40, 30) court 11m block",
     .arguments = courtArguments,
     .range = {1e-3, mostSide_m, "at least 1 mm"},

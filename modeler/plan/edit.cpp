@@ -93,12 +93,10 @@ Footprint rim(const Footprint& footprint, double width_m) {
     return boolean(Boolean::Difference, footprint, offset(footprint, -width_m));
 }
 
-Result<Footprint> court(const Footprint& footprint, double wing_m) {
-    if (!(wing_m > 0)) return Error{Error::Kind::Input, "the wings around a court must be wider than 0"};
+std::optional<Footprint> court(const Footprint& footprint, double wing_m) {
+    if (!(wing_m > 0)) return std::nullopt;
     const Footprint inner = offset(footprint, -wing_m);
-    if (inner.empty())
-        return Error{Error::Kind::Input,
-                     "wings of " + std::to_string(wing_m) + " m leave no court; make them narrower"};
+    if (inner.empty()) return std::nullopt;
     Footprint result = booleanOf(PathBoolean::Difference, pathsOf(footprint), pathsOf(inner));
     result.tags = footprint.tags;
     const Edge made{result.tag("court"), EdgeSource::Court};

@@ -38,9 +38,9 @@ Footprint setback(const Footprint& footprint, std::span<const double> distances_
 /// The same of an outline that anybody may have drawn: Error::Budget where what is too near to the edges overlaps in
 /// more than 20,000 crossings, or reaches over so many edges that finding its parts takes 2·10⁷ steps.
 Result<Footprint> setbackInBudget(const Footprint& footprint, std::span<const double> distances_m);
-/// With a court that leaves wings of `wing_m`; its edges are EdgeSource::Court and tagged "court". Error::Input where
-/// the wings leave no court.
-Result<Footprint> court(const Footprint& footprint, double wing_m);
+/// With a court that leaves wings of `wing_m`; its edges are EdgeSource::Court and tagged "court". Nothing where the
+/// wings leave no court, or are no wider than 0.
+std::optional<Footprint> court(const Footprint& footprint, double wing_m);
 
 /// Edges within `tolerance` radians of the plan's main direction, or square to it, are laid along it through their
 /// middles; corners are found again. The main direction is the one along which most metres of edges run. The footprint

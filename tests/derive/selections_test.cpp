@@ -75,6 +75,19 @@ TEST(Selections, SetbacksTellWordsAndWhatTheyLeave) {
         << "the first has room";
 }
 
+TEST(Selections, CourtsThatWingsLeaveNoRoomForAreTold) {
+    EXPECT_EQ(
+        told("start A -> footprint rect(20, 20) court 11m extrude 4m block\n"),
+        "2:35 wings of 11 m leave no court in a plan of 20 m by 20 m, which stays whole; make the wings narrower, "
+        "or begin with a larger plan\n");
+    EXPECT_EQ(told("start A -> for k in 1..3 { footprint rect(20, 20) court (4m * k) extrude 4m block }\n"), "")
+        << "the first has room";
+    const auto d = derived("grammar 2\nstart A -> footprint rect(20, 20) court 11m extrude 4m block\n");
+    const derive::Scope& scope = d.tree.shapes.back().scope;
+    EXPECT_DOUBLE_EQ(scope.size.x, 20);
+    EXPECT_DOUBLE_EQ(scope.size.z, 20);
+}
+
 TEST(Selections, FacesThatAShapeLacksAreTold) {
     const std::string house = "start A -> footprint rect(10, 8) extrude 4m House\nrule House -> block + ";
     EXPECT_EQ(told(house + "gableRoof(40deg) at +y + cube at each(slopes)\n"),

@@ -167,8 +167,8 @@ TEST(Edit, CourtsLeaveWings) {
         EXPECT_EQ(f.tags[e.tag], "court");
     }
     EXPECT_EQ(tagAt(f, {0, 7}), "front");
-    EXPECT_FALSE(court(*rectangle(5, 5), 3).ok());
-    EXPECT_FALSE(court(*rectangle(5, 5), 0).ok());
+    EXPECT_FALSE(court(*rectangle(5, 5), 3));
+    EXPECT_FALSE(court(*rectangle(5, 5), 0));
 }
 
 TEST(Edit, CrossingOutlinesAreResolvedByWinding) {
