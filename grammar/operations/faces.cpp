@@ -107,8 +107,11 @@ public:
         warnOfLostCore(faces);
         for (const Face& face : faces) {
             if (face.part && !runSide(face)) return false;
-            if (!face.part)
-                core = core.empty() ? joined(face) : plan::boolean(plan::Boolean::Union, core, joined(face));
+            if (face.part) continue;
+            for (const size_t plate : face.plates) {  // no face: its outline has no name of its own
+                const plan::Footprint& own = plates_.plates[plate].footprint;
+                core = core.empty() ? own : plan::boolean(plan::Boolean::Union, core, own);
+            }
         }
         if (core.empty()) return true;
         const Part *top = findPart(faces_, "top"), *bottom = findPart(faces_, "bottom"),
@@ -318,8 +321,7 @@ constinit const Operation faces{
         "first word that fits an edge wins; in a plate x runs from left "
         "to right seen "
         "from outside and z outward. With 'smooth', sides of one part that bend by no more than the angle are one "
-        "face, "
-        "whose outline is called outer: 'split along outer' gives it bays that follow the curve.",
+        "face. The outline of a face is called outer: 'split along outer' gives it bays that follow a curve.",
     .example =
         "footprint arc(9m, 14m, 30deg, 150deg, 24) extrude 6m faces .3m smooth 20deg { outer: split along outer { { "
         "~3m: "

@@ -190,7 +190,12 @@ bool runAlong(PartsContext& context, const Parts& split) {
     for (const plan::PlacedEdge& edge : edges) belongs.push_back(plan::isEdgeCalled(footprint, edge, split.edges));
     const plan::Chain chain = plan::longestChain(footprint, belongs);
     if (chain.count == 0) {
-        derive::Explanation explanation = derive::noEdgeCalled(split.edges, footprint, "so nothing stands along it");
+        const Scope& scope = context.scope();
+        derive::Explanation explanation = derive::noEdgeCalled(
+            split.edges, footprint,
+            fmt::format(
+                "so nothing stands along it here: a plan of {:.3g} m by {:.3g} m about ({:.3g}, {:.3g}, {:.3g})",
+                scope.size.x, scope.size.z, scope.centre.x, scope.centre.y, scope.centre.z));
         context.warn(split.span, std::move(explanation.message), std::move(explanation.hint));
         return true;
     }

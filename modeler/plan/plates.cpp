@@ -185,9 +185,10 @@ Result<Plates> platesOf(const Footprint& footprint, double thickness_m) {
 }
 
 Footprint joined(const std::vector<Plate>& plates, bool closed) {
-    if (plates.size() == 1) return plates[0].footprint;
     Footprint whole;
-    if (auto direct = joinedTrapezoids(plates, closed)) {
+    if (plates.size() == 1) {
+        whole = plates[0].footprint;
+    } else if (auto direct = joinedTrapezoids(plates, closed)) {
         whole = std::move(*direct);
     } else {
         whole = plates[0].footprint;

@@ -26,7 +26,7 @@ struct Plates {
 Result<Plates> platesOf(const Footprint& footprint, double thickness_m);
 
 /// Plates that follow each other along an outline as one; `closed`: the last one meets the first. Edges keep tags and
-/// sources, and where there are several plates those that aren't EdgeSource::Cut are called `outer` as well.
+/// sources, and those that aren't EdgeSource::Cut are called `outer` as well.
 Footprint joined(const std::vector<Plate>& plates, bool closed);
 
 /// What lies within half of `width_m` of a chain of points, with mitred corners and straight ends; `closed`: from the

@@ -134,6 +134,18 @@ TEST(Faces, BaysFollowASmoothFace) {
     EXPECT_EQ(bays, 21);
 }
 
+TEST(Faces, BaysStandOnSidesThatNoCurveJoinsToo) {
+    // The flat ends of a stretched circle bend by less than 25 degrees, its tight ends by more.
+    const Derivation d = derived(
+        "grammar 2\nterminal wall\nstart T -> size (40, 6, 20) footprint round(16) Ring\n"
+        "rule Ring -> faces .5m smooth 25deg { side: split along outer { { ~2m: wall }* } | rest: nil }\n");
+    EXPECT_TRUE(derive::warnings(d).all().empty());
+    double length_m = 0;
+    for (const Shape& s : d.tree.shapes)
+        if (s.solid != derive::none) length_m += s.scope.size.x;
+    EXPECT_NEAR(length_m, 97, 3) << "all around the ellipse";
+}
+
 TEST(Faces, APlateLooksOutwardAndCanBeSplit) {
     const Derivation d =
         derived(block("rect(10, 6)", "faces .5m { left: split x { 2m: front | ~1: wall } | rest: nil }"));
