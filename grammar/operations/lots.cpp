@@ -113,7 +113,9 @@ bool runLots(PartsContext& context, const Parts& parts) {
     context.select(parts.span, hasStreet, [] {
         return derive::Explanation{
             "no edge of this block is called 'street', so all of it is 'inner' and no lot is made",
-            "lots stand along streets, which the blocks of a 'network' have: write 'network Net { block: Block }'"};
+            "lots stand along streets: the blocks of a 'network' have them, and 'tag street' before 'lots' makes one "
+            "of "
+            "every edge, 'tag street along front' of some"};
     });
     for (const town::Lot& lot : cut) {
         const bool inner = lot.street_m <= 0;
@@ -141,7 +143,7 @@ constinit const Operation lots{
         "block's tags; those between lots are called cut. By box they are halves of halves; by skeleton strips along "
         "the "
         "streets, cut square to them.",
-    .example = "size (60, 4, 40) lots box(300, front: 8m) { lot: setback 2m wall | inner: lawn }",
+    .example = "size (60, 4, 40) tag street lots box(300, front: 8m) { lot: setback 2m wall | inner: lawn }",
     .arguments = lotsArguments,
     .phase = Operation::Phase::Content,
     .block = {.label = "lot"},

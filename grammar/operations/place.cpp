@@ -36,7 +36,7 @@ constexpr OperationArgument varietyArguments[] = {
 /// What a placed object has of its own: nothing beside `place` reaches into it.
 void checkBeside(OperationChecker& checker, const Attribute& attribute) {
     const Phase phase = attribute.operation->phase;
-    if (phase == Phase::Scope || attribute.operation == &variety || attribute.operation == &tag) return;
+    if (phase == Phase::Scope || attribute.operation == &variety) return;
     if (phase == Phase::Placement && attribute.operation != &blend && attribute.operation != &by) return;
     checker.error(attribute.span, fmt::format("'{}' can't reach into an object of its own", attribute.operation->name),
                   attribute.operation == &with ? "hand values down as parameters: 'place House { storeys = 3 }'"

@@ -1,4 +1,4 @@
-// displace, tag, report, with: what acts on all that a shape holds.
+// displace, report, with: what acts on all that a shape holds.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -25,7 +25,6 @@ using Written = syntax::Expr;
 
 constexpr OperationArgument displaceArguments[] = {
     {"noise", ArgumentType::Noise, "billow(amplitude, frequency) or fbm(amplitude, frequency [, octaves])"}};
-constexpr OperationArgument tagArguments[] = {{"tag", ArgumentType::Name, "a word"}};
 constexpr OperationArgument withArguments[] = {{"name", ArgumentType::Name, "the value's name, followed by '='"},
                                                {"value", ArgumentType::Number, "its value, of any type"}};
 
@@ -85,10 +84,6 @@ void applyDisplace(AttributeContext& context, const Attribute& attribute) {
     context.out.extras.displace.push_back(noise);
 }
 
-void applyTag(AttributeContext& context, const Attribute& attribute) {
-    context.out.extras.tags.push_back(attribute.args[0].value.text);
-}
-
 void checkWith(OperationChecker& checker, const syntax::Attribute& written) {
     if (written.args.size() != 2) return;
     Attribute out;
@@ -140,16 +135,6 @@ constinit const Operation displace{
     .traits = {.repeatable = true},
     .check = checkDisplace,
     .apply = applyDisplace,
-};
-
-constinit const Operation tag{
-    .name = "tag",
-    .doc = "Marks the shape with a word that rules and faces may ask for.",
-    .example = "cube tag K",
-    .arguments = tagArguments,
-    .phase = Phase::Whole,
-    .traits = {.repeatable = true, .beforeShape = true},
-    .apply = applyTag,
 };
 
 constinit const Operation report{

@@ -107,6 +107,11 @@ void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
             if (!cursor.expect(argument.word, "in '" + plain(row.name) + "'", "as in '" + plain(row.example) + "'"))
                 return;
         }
+        // Behind its own word a name is a name, though an operation may be called so: `along court`.
+        if (!argument.word.empty() && argument.type == ArgumentType::Name && cursor.at(Token::Kind::Word)) {
+            attribute.args.push_back(readTyped(cursor, argument.type));
+            continue;
+        }
         if (argument.optional && isWholeOperation(cursor)) continue;
         if (const OperationArgument* later = argumentAt(cursor, row, argument)) {
             cursor.fail("'" + plain(row.name) + "' needs " + plain(describe(argument.type)) + " before '" +

@@ -107,7 +107,8 @@ TEST(Selections, LotsWithoutStreetsAreTold) {
     EXPECT_EQ(
         told("start A -> size (40, 2, 40) B\nrule B -> lots 100 { lot: cube | inner: cube }\n"),
         "3:11 no edge of this block is called 'street', so all of it is 'inner' and no lot is made; lots stand along "
-        "streets, which the blocks of a 'network' have: write 'network Net { block: Block }'\n");
+        "streets: the blocks of a 'network' have them, and 'tag street' before 'lots' makes one of every edge, 'tag "
+        "street along front' of some\n");
 }
 
 TEST(Selections, TheCauseOfNothingSolidIsNamed) {
