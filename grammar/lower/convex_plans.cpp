@@ -43,12 +43,27 @@ std::optional<ConvexContent> carriedOut(const plan::Formula& formula, const Plan
     return whole;
 }
 
+/// A pyramid, dome or bell roof; nothing for other rows, or where it takes too many pieces.
+std::optional<ConvexContent> roundOverPlan(const derive::SolidValue& solid, const Scope& scope, ShapeId shape,
+                                           const Box3d& world, const derive::Footprints& footprints) {
+    std::optional<ConvexContent> whole;
+    for (const PlanPlanes& planes : roundPlanesOver(solid, scope, footprints)) {
+        auto piece = carriedOut(planes.formula, planes.outer, scope, shape, world);
+        if (!piece || (whole && whole->pieces.size() + piece->pieces.size() > mostPieces)) return std::nullopt;
+        if (whole)
+            whole->unite(*std::move(piece));
+        else
+            whole = std::move(piece);
+    }
+    return whole;
+}
+
 }  // namespace
 
 std::optional<ConvexContent> convexOverPlan(const derive::SolidValue& solid, const Scope& scope, ShapeId shape,
                                             const Box3d& world, const derive::Footprints& footprints) {
     const auto planes = planesOver(solid, scope, footprints);
-    if (!planes) return std::nullopt;
+    if (!planes) return roundOverPlan(solid, scope, shape, world, footprints);
     auto content = carriedOut(planes->formula, planes->outer, scope, shape, world);
     if (!content || !planes->hollow) return content;
     const auto hollow = carriedOut(planes->formula, *planes->hollow, scope, shape, world);

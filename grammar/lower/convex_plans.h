@@ -9,8 +9,8 @@
 
 namespace sgm::lower {
 
-/// A block, or a roof that planesOver (plan_planes.h) knows: the formula of its footprint, carried out on convex
-/// polyhedra; nothing for other rows, or where it takes too many pieces. `world` bounds it.
+/// A block, or a roof that planesOver or roundPlanesOver (plan_planes.h) knows: the formula of its footprint, carried
+/// out on convex polyhedra; nothing for other rows, or where it takes too many pieces. `world` bounds it.
 std::optional<ConvexContent> convexOverPlan(const derive::SolidValue& solid, const derive::Scope& scope,
                                             derive::ShapeId shape, const Box3d& world,
                                             const derive::Footprints& footprints);

@@ -197,9 +197,9 @@ ConvexContent convexSolid(const SolidValue& solid, const Scope& scope, derive::S
     }
     if (solid.kind == rules::Solid::Kind::Morph && (solid.amount <= 0 || solid.amount >= 1))
         return convexSolid(solid.parts[solid.amount >= 1 ? 1 : 0], scope, shape, world, footprints, meshes, roundness);
-    const bool overPlan =
-        solid.primitive && (solid.primitive->plan == field::PlanUse::OwnHeight ||
-                            (solid.primitive->plan != field::PlanUse::None && scope.footprint != derive::none));
+    // Rows that have parts of their own, a block's, need no plan where the scope has none: it is its rectangle.
+    const bool overPlan = solid.primitive && solid.primitive->plan != field::PlanUse::None &&
+                          (scope.footprint != derive::none || !solid.primitive->convexParts);
     if (overPlan) {
         if (auto standing = convexOverPlan(solid, scope, shape, world, footprints)) return *std::move(standing);
         content.unknown = true;

@@ -27,6 +27,11 @@ struct PlanPlanes {
 std::optional<PlanPlanes> planesOver(const derive::SolidValue& solid, const derive::Scope& scope,
                                      const derive::Footprints& footprints);
 
+/// A pyramid, dome or bell roof as rises whose union it is; nothing for other rows. Pyramids are exact, round profiles
+/// planes that touch them or chords outside of them: by at most 2 % of the depth of the footprint.
+std::vector<PlanPlanes> roundPlanesOver(const derive::SolidValue& solid, const derive::Scope& scope,
+                                        const derive::Footprints& footprints);
+
 /// A half-space of a scope's axes about its centre, in the object's frame.
 field::HalfSpace inObject(field::HalfSpace plane, const derive::Scope& scope);
 

@@ -111,6 +111,35 @@ TEST(ConvexParts, SolidsOverFootprintsAreExact) {
         }
 }
 
+TEST(ConvexParts, RoundRoofsOverFootprintsAreNoMoreThanATwentiethFatter) {
+    for (const char* plan : {"rect(12, 8)", "ngon(7, 6m)", "round(24, 5m)", "ell(16, 12, 6, 5)", "ring(20, 16, 5)"})
+        for (const char* solid :
+             {"domeRoof", "domeRoof(overhang: .4m, fascia: .3m)", "bellRoof", "bellRoof(fascia: .3m)", "pyramidRoof",
+              "pyramidRoof(overhang: .5m)", "pyramidRoof(overhang: .5m, fascia: .2m)"}) {
+            SCOPED_TRACE(std::string(plan) + " " + solid);
+            const Lowered model("grammar 1\nstart A -> footprint " + std::string(plan) +
+                                " extrude 4m turn 20deg B\nrule B -> " + solid + "\n");
+            const ConvexParts parts = partsOf(model);
+            const Overlay convex(model, polyhedra(parts));
+            EXPECT_NEAR(convex.pieces, 1.02, 0.03);
+            EXPECT_LT(convex.outside, 0.05);
+            EXPECT_TRUE(parts.notes.empty());
+        }
+}
+
+TEST(ConvexParts, RoofsWithoutAFootprintStandOverTheirRectangle) {
+    for (const char* solid : {"hipRoof", "domeRoof", "bellRoof", "pyramidRoof"}) {
+        SCOPED_TRACE(solid);
+        const Lowered model(std::string("grammar 1\nstart A -> cube size (9, 2, 6) + ") + solid +
+                            " size (9, 4, 6) at +y\n");
+        const ConvexParts parts = partsOf(model);
+        const Overlay convex(model, polyhedra(parts));
+        EXPECT_NEAR(convex.pieces, 1.02, 0.03);
+        EXPECT_LT(convex.outside, 0.05);
+        EXPECT_TRUE(parts.notes.empty());
+    }
+}
+
 TEST(ConvexParts, RoundSolidsKeepTheirVolume) {
     for (const char* solid : {"sphere", "ellipsoid", "cylinder", "cone", "capsule", "torus(.3)", "pyramid", "prism",
                               "wedge", "roof(0)", "roof(.4)", "roof(1)", "morph(cube, sphere, .5)"}) {
