@@ -171,12 +171,13 @@ private:
         return meeting;
     }
 
-    /// Whether the surface goes through the apex, with solid on one side.
+    /// Whether the surface goes through the apex, with solid on one side; on both where a tip touches what stands on
+    /// it.
     bool isApex() const {
         const Vec3d step = axis_ * (apexSlack * surface_.cell_m);
         const std::array points{apex_.as<float>(), (apex_ + step).as<float>(), (apex_ - step).as<float>()};
         const std::vector<float> values = valuesAt(surface_, points);
-        return std::abs(values[0]) < onSurface * surface_.cell_m && values[1] * values[2] < 0;
+        return std::abs(values[0]) < onSurface * surface_.cell_m && std::min(values[1], values[2]) < 0;
     }
 
     /// The triangles that go and those of the fan; false where one of these has a confined vertex that isn't taken.

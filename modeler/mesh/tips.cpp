@@ -19,6 +19,7 @@ constexpr Label noLabel = 0xffffffffu;
 constexpr float widestSmooth = 0.85f, widestCreased = 0.7f;
 constexpr size_t mostOfPart = 64;     ///< candidates, and as many within a cell: a part with more is a fractal or rough
 constexpr size_t mostCreased = 1024;  ///< vertices of a part, by whose creases planes are looked for farther away
+constexpr double sameSide = 0.5;      ///< cosine between the ways from an apex to its vertex and to one nearer
 constexpr double nearer = 0.25;       ///< of the way from a vertex to its apex: no other vertex is as near to that
 // In cells:
 constexpr double nearestApex = 0.05, farthestApex = 16;  ///< from the vertex below it
@@ -311,7 +312,8 @@ private:
 
     double wayOf(const Candidate& c) const { return length(c.apex - positions_[c.vertex].as<double>()); }
 
-    /// By candidate: whether the mesh has vertices nearer to its apex, so that nothing is missing there.
+    /// By candidate: whether the mesh has vertices nearer to its apex, on its side of that, so that nothing is missing
+    /// there. What stands on the tip, as a ball on a spire, lies beyond.
     std::vector<bool> reachedApexes() const {
         std::vector<bool> isReached(candidates_.size());
         if (candidates_.empty()) return isReached;
@@ -321,7 +323,11 @@ private:
         std::vector<uint32_t> found;
         for (const Vec3f& p : positions_) {
             finder.find({p, p}, found);
-            for (const uint32_t i : found) isReached[i] = true;
+            for (const uint32_t i : found) {
+                const Vec3d own = positions_[candidates_[i].vertex].as<double>() - candidates_[i].apex,
+                            way = p.as<double>() - candidates_[i].apex;
+                if (dot(own, way) > sameSide * length(own) * length(way)) isReached[i] = true;
+            }
         }
         return isReached;
     }

@@ -51,6 +51,10 @@ INSTANTIATE_TEST_SUITE_P(
     Of, Tips,
     ::testing::Values(
         TipCase{"cone", "cube size (20m, .5m, 20m) + cone size (1.5m, 8m, 1.5m) move (X, .25m, X)", {0, 4.25, 0}},
+        TipCase{"cone below a ball",
+                "cube size (20m, .5m, 20m) + cone size (2m, 8m, 2m) move (X, .25m, X)"
+                " + sphere size .7m move (X, 4.6m, X)",
+                {0, 4.25, 0}},
         TipCase{"blunt cone", "cube size (20m, .5m, 20m) + cone size (6m, 4m, 6m) move (X, .25m, X)", {0, 2.25, 0}},
         TipCase{"pyramid", "cube size (20m, .5m, 20m) + pyramid size (1.5m, 8m, 1.5m) move (X, .25m, X)", {0, 4.25, 0}},
         TipCase{"turned pyramid",
