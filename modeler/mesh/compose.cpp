@@ -5,13 +5,18 @@
 namespace sgm::mesh {
 namespace {
 
-/// The normals of the input's corners at a vertex on one curved region.
-struct CornerSum {
-    uint32_t vertex, region;
-    Vec3f normal;        ///< at last their mean
-    bool smooth = true;  ///< whether they are much the same
+Vec3f normalOfVertex(const Mesh& input, const FlatMesh& flat, uint32_t v) {
+    const auto after = [](uint32_t vertex, const FlatMesh::Part& p) { return vertex < p.firstVertex; };
+    const auto part = std::prev(std::upper_bound(flat.parts.begin(), flat.parts.end(), v, after));
+    return input.chunks[static_cast<size_t>(part - flat.parts.begin())].normals[v - part->firstVertex];
+}
 
-    friend bool operator<(const CornerSum& a, const CornerSum& b) {
+/// The normal of the input's corner at a vertex on a curved region.
+struct InputCorner {
+    uint32_t vertex, region;
+    Vec3f normal;
+
+    friend bool operator<(const InputCorner& a, const InputCorner& b) {
         return a.vertex != b.vertex ? a.vertex < b.vertex : a.region < b.region;
     }
 };
@@ -19,26 +24,70 @@ struct CornerSum {
 constexpr float sameDirection = 0.9f;    ///< cosine between corners of one smooth fan
 constexpr float sameNormal = 1 - 1e-6f;  ///< cosine between normals that needn't be told apart
 
-/// Ascending.
-std::vector<CornerSum> cornerSums(const Mesh& input, const FlatMesh& flat, const SurfaceRegions& regions,
-                                  std::span<const Plane> planes) {
-    std::vector<CornerSum> all;
-    for (size_t i = 0; i < input.chunks.size(); ++i)
-        for (const CornerNormal& c : input.chunks[i].cornerNormals) {
-            const uint32_t t = flat.parts[i].firstTriangle + c.corner / 3, region = regions.ofTriangle[t];
-            if (!planes[region].planar())
-                all.push_back({flat.triangles[t][static_cast<int>(c.corner % 3)], region, c.normal});
-        }
-    std::stable_sort(all.begin(), all.end());
-    std::vector<CornerSum> sums;
-    for (size_t begin = 0, end; begin < all.size(); begin = end) {
-        CornerSum sum = all[begin];
-        for (end = begin + 1; end < all.size() && !(all[begin] < all[end]); ++end) sum.normal += all[end].normal;
-        sum.normal = normalized(sum.normal);
-        for (size_t i = begin; i < end; ++i) sum.smooth &= dot(all[i].normal, sum.normal) > sameDirection;
-        sums.push_back(sum);
+/// The normals of the input's corners at vertices of curved regions where some corner has a normal of its own.
+class InputCorners {
+public:
+    InputCorners() = default;
+    InputCorners(const Mesh& input, const FlatMesh& flat, const SurfaceRegions& regions,
+                 std::span<const Plane> planes) {
+        PageVector<uint8_t> hasOwn;  // by vertex
+        hasOwn.assign(flat.positions.size(), uint8_t{0});
+        for (size_t i = 0; i < input.chunks.size(); ++i)
+            for (const CornerNormal& c : input.chunks[i].cornerNormals) {
+                const uint32_t t = flat.parts[i].firstTriangle + c.corner / 3, region = regions.ofTriangle[t];
+                if (planes[region].planar()) continue;
+                const uint32_t v = flat.triangles[t][static_cast<int>(c.corner % 3)];
+                corners_.push_back({v, region, c.normal});
+                hasOwn[v] = 1;
+            }
+        std::stable_sort(corners_.begin(), corners_.end());
+        addOthers(input, flat, regions, hasOwn);
     }
-    return sums;
+
+    /// Those of a vertex on a region; none where all of them have the vertex's normal.
+    std::span<const InputCorner> at(uint32_t vertex, uint32_t region) const {
+        const auto found = std::equal_range(corners_.begin(), corners_.end(), InputCorner{vertex, region, {}});
+        return {found.first, found.second};
+    }
+
+private:
+    /// Corners with the vertex's normal count as well: one that differs, as of a sliver, doesn't speak for all.
+    void addOthers(const Mesh& input, const FlatMesh& flat, const SurfaceRegions& regions,
+                   const PageVector<uint8_t>& hasOwn) {
+        std::vector<InputCorner> others;
+        for (size_t i = 0; i < input.chunks.size(); ++i) {
+            const FlatMesh::Part& part = flat.parts[i];
+            auto own = input.chunks[i].cornerNormals.begin();
+            const auto end = input.chunks[i].cornerNormals.end();
+            for (uint32_t corner = 0; corner < 3 * part.triangles; ++corner) {
+                while (own != end && own->corner < corner) ++own;
+                const uint32_t t = part.firstTriangle + corner / 3;
+                const uint32_t v = flat.triangles[t][static_cast<int>(corner % 3)];
+                if (!hasOwn[v] || (own != end && own->corner == corner)) continue;
+                const uint32_t region = regions.ofTriangle[t];
+                if (!at(v, region).empty()) others.push_back({v, region, normalOfVertex(input, flat, v)});
+            }
+        }
+        if (others.empty()) return;
+        corners_.insert(corners_.end(), others.begin(), others.end());
+        std::stable_sort(corners_.begin(), corners_.end());
+    }
+
+    std::vector<InputCorner> corners_;  ///< ascending
+};
+
+/// The mean of corners' normals where these are much the same, else of those that are to a triangle's normal, else
+/// that.
+Vec3f normalOf(std::span<const InputCorner> corners, Vec3f face) {
+    Vec3f sum, near;
+    for (const InputCorner& c : corners) {
+        sum += c.normal;
+        if (dot(c.normal, face) > sameDirection) near += c.normal;
+    }
+    sum = normalized(sum);
+    const auto isNear = [&](const InputCorner& c) { return dot(c.normal, sum) > sameDirection; };
+    if (std::all_of(corners.begin(), corners.end(), isNear)) return sum;
+    return near == Vec3f{} ? face : normalized(near);
 }
 
 class Composer {
@@ -48,7 +97,7 @@ public:
         bare_ = input.hasPositionsOnly();
         labelled_ =
             std::any_of(input.chunks.begin(), input.chunks.end(), [](const Chunk& c) { return !c.labels.empty(); });
-        if (!bare_) corners_ = cornerSums(input, flat, regions, planes);
+        if (!bare_) corners_ = InputCorners(input, flat, regions, planes);
     }
 
     Mesh compose(std::span<const SimpleTriangle> triangles) {
@@ -97,27 +146,18 @@ private:
 
     Vec3f normalAt(const SimpleTriangle& t, uint32_t v) const {
         if (planes_[t.region].planar()) return planes_[t.region].normal.as<float>();
-        const CornerSum wanted{v, t.region, {}};
-        const auto at = std::lower_bound(corners_.begin(), corners_.end(), wanted);
-        if (at == corners_.end() || wanted < *at) return inputNormal(v);
-        if (at->smooth) return at->normal;
+        const std::span<const InputCorner> corners = corners_.at(v, t.region);
+        if (corners.empty()) return normalOfVertex(input_, flat_, v);
         const Vec3d a = flat_.positions[t.corners.x].as<double>(), b = flat_.positions[t.corners.y].as<double>(),
                     c = flat_.positions[t.corners.z].as<double>();
-        return normalized(cross(b - a, c - a)).as<float>();
-    }
-
-    Vec3f inputNormal(uint32_t v) const {
-        const auto after = [](uint32_t vertex, const FlatMesh::Part& p) { return vertex < p.firstVertex; };
-        auto part = std::upper_bound(flat_.parts.begin(), flat_.parts.end(), v, after);
-        --part;
-        return input_.chunks[static_cast<size_t>(part - flat_.parts.begin())].normals[v - part->firstVertex];
+        return normalOf(corners, normalized(cross(b - a, c - a)).as<float>());
     }
 
     const Mesh& input_;
     const FlatMesh& flat_;
     const SurfaceRegions& regions_;
     const std::span<const Plane> planes_;
-    std::vector<CornerSum> corners_;
+    InputCorners corners_;
     PageVector<uint32_t> number_;  ///< by vertex of the input
     Chunk chunk_;
     bool bare_, labelled_;

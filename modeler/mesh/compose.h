@@ -14,8 +14,9 @@ struct SimpleTriangle {
     uint32_t region;
 };
 
-/// One chunk, vertices in the order of the input. Corners on planar regions get the plane's normal, others what `input`
-/// has for that vertex and region; normals and origins only where the input has them, labels likewise. O(n).
+/// One chunk, vertices in the order of the input. Corners on planar regions get the plane's normal, others the mean of
+/// what `input` has for that vertex and region, where that differs much of what is near the triangle's own normal;
+/// normals and origins only where the input has them, labels likewise. O(n).
 Mesh composeMesh(const Mesh& input, const FlatMesh& flat, const SurfaceRegions& regions, std::span<const Plane> planes,
                  std::span<const SimpleTriangle> triangles);
 
