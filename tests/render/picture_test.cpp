@@ -302,6 +302,8 @@ TEST_F(Picture, AnEyeInAHollowHasALampAndOneInTheOpenHasNone) {
     EXPECT_EQ(lampFor(tape, field.bounds, {-3, 2.5, 0}), 0) << "in a pit";
     EXPECT_EQ(lampFor(tape, field.bounds, {-1.5, 2.5, 2.5}), 0) << "in the rock";
     EXPECT_EQ(lampFor(tape, field.bounds, {9, 0, 0}), 0);
+    EXPECT_EQ(lampFor(tape, field.bounds, {-3.99, 2.5, 0}), 0) << "a centimetre from the pit's wall";
+    EXPECT_GT(lampFor(tape, field.bounds, {1, 0.5, -1.99}), 1.9) << "a centimetre from the cave's";
 }
 
 TEST_F(Picture, InsidePrefersAnOpenPitToTheSolid) {

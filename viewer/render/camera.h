@@ -30,7 +30,7 @@ Camera turned(Camera camera, double angle);
 /// drawn inside out.
 Camera inside(const eval::Tape& tape, const Box3f& bounds);
 /// How far a lamp beside an eye has to reach, metres, where this stands in a hollow: the surface lies in nine of ten
-/// directions within `bounds`. 0 elsewhere. Some 6,000 values of the field.
+/// directions within `bounds`. 0 elsewhere. Up to 25,000 values of the field.
 double lampFor(const eval::Tape& tape, const Box3f& bounds, Vec3d eye);
 /// The height of the surface straight below a place that is in the open, metres; nothing where none is found above
 /// `lowest_m`. Some fifty values of the field.

@@ -55,25 +55,28 @@ Stand deepest(const Samples& grid) {
     return best > 0 ? hollow : solid;
 }
 
+constexpr float nearShare = 0.1f;  ///< of a grid's cell: so near to the surface a way meets it
+
 /// How far one can go in a direction before meeting the surface, metres, or leaving the bounds.
 struct Way {
     float length = 0;
     bool meets = false;
 };
 
-/// By direction. `cell` is that of a grid over the bounds, metres; `slope` the field's steepest.
-std::vector<Way> freeWays(const eval::Tape& tape, const Box3f& bounds, float cell, float slope, const Stand& stand,
+/// By direction. A way meets the surface where that is nearer than `near`, metres; `slope` is the field's steepest.
+std::vector<Way> freeWays(const eval::Tape& tape, const Box3f& bounds, float near, float slope, const Stand& stand,
                           const std::vector<Vec3f>& directions) {
+    constexpr int mostSteps = 256;  // beside a wall ways begin with short ones
     std::vector<Way> ways(directions.size());
     std::vector<bool> stopped(directions.size(), false);
-    for (int step = 0; step < 64; ++step) {
+    for (int step = 0; step < mostSteps && std::find(stopped.begin(), stopped.end(), false) != stopped.end(); ++step) {
         std::vector<Vec3f> points;
         for (size_t i = 0; i < directions.size(); ++i) points.push_back(stand.place + directions[i] * ways[i].length);
         const std::vector<float> values = valuesAt(tape, points);
         for (size_t i = 0; i < directions.size(); ++i) {
             if (stopped[i]) continue;
             const float free = stand.side * values[i] / slope;
-            ways[i].meets = free < 0.1f * cell;
+            ways[i].meets = free < near;
             stopped[i] = ways[i].meets || !bounds.contains(points[i]);
             if (!stopped[i]) ways[i].length += free;
         }
@@ -93,13 +96,13 @@ Camera inside(const eval::Tape& tape, const Box3f& bounds) {
             const double angle = turn * pi / 24;
             directions.push_back(normalized(Vec3d{std::cos(angle), rise, std::sin(angle)}).as<float>());
         }
-    const float slope = std::max(tape.lipschitz(), 1e-6f);
-    const std::vector<Way> ways = freeWays(tape, grid.bounds, grid.cell, slope, stand, directions);
+    const float slope = std::max(tape.lipschitz(), 1e-6f), near = nearShare * grid.cell;
+    const std::vector<Way> ways = freeWays(tape, grid.bounds, near, slope, stand, directions);
     const auto longest = std::max_element(ways.begin(), ways.end(),
                                           [](const Way& one, const Way& other) { return one.length < other.length; });
     const Vec3f look = directions[static_cast<size_t>(longest - ways.begin())];
     // Step back from the deepest place, to see the hollow from its edge.
-    const float back = freeWays(tape, grid.bounds, grid.cell, slope, stand, {-look}).front().length;
+    const float back = freeWays(tape, grid.bounds, near, slope, stand, {-look}).front().length;
     const Vec3f eye = stand.place - look * std::max(0.0f, 0.6f * back - 0.2f * stand.depth);
     Camera camera;
     camera.eye = eye.as<double>();
@@ -125,7 +128,9 @@ double lampFor(const eval::Tape& tape, const Box3f& bounds, Vec3d eyeAt) {
     }
     const float cell = maxComponent(bounds.size()) / Samples::edge;
     const float slope = std::clamp(tape.lipschitz(), 1e-6f, steepest);
-    const std::vector<Way> ways = freeWays(tape, bounds, cell, slope, stand, directions);
+    // An eye beside a wall doesn't meet it on ways that lead along it or away.
+    const float near = std::min(nearShare * cell, stand.depth / (4 * slope));
+    const std::vector<Way> ways = freeWays(tape, bounds, near, slope, stand, directions);
     const auto closed = std::count_if(ways.begin(), ways.end(), [](const Way& way) { return way.meets; });
     if (static_cast<double>(closed) < leastClosed * directionCount) return 0;
     float longest = 2 * stand.depth;
