@@ -108,6 +108,8 @@ Result<Image> drawBySoftware(const MeshScene& scene, const PictureOptions& optio
 Result<Image> MeshPainter::draw(const PictureOptions& options, Progress* progress, const MeshStyle& style) {
     MeshScene& scene = parts_->scene;
     if (Status status = checkPicture(scene.bounds(), options); !status) return status.error();
+    if (style.look == MeshLook::Materials)
+        if (Status status = scene.lightFor(options, progress); !status) return status.error();
     if (softwareGl()) return drawBySoftware(scene, options, style, progress);
     std::vector<float> pixels(size_t(options.width) * size_t(options.height) * 4);
     const auto put = [&](size_t pixel, const float* color) { std::copy_n(color, 4, &pixels[pixel * 4]); };

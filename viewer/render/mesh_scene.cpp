@@ -1,5 +1,5 @@
-// The mesh by rasterisation, under the same light as the field: soft sun shadow from one depth map, sky visibility from
-// many (a depth map a direction). Drawn in batches of triangles, so that no draw takes long.
+// The mesh by rasterisation, under the same light as the field. Drawn in batches of triangles, so that no draw takes
+// long.
 #include "viewer/render/mesh_scene.h"
 
 #include <algorithm>
@@ -17,18 +17,7 @@ namespace {
 
 constexpr size_t batchTriangles = 1u << 17;  // a draw
 constexpr float lineWidth = 1.6f;            // of hard edges, pixels
-constexpr int sunMapEdge = 2048, skyMapEdge = 256;
-constexpr size_t leastSkyMaps = 12;
-
-/// As many as the driver draws in a second or less; software draws some 3 million triangles a second
-/// (docs/lab/pictures.md).
-size_t skyMapsFor(size_t triangles, size_t mostSkyMaps) {
-    const size_t drawn = softwareGl() ? size_t{5} << 19 : size_t{24} << 20;
-    return std::clamp(drawn / std::max<size_t>(triangles, 1), leastSkyMaps, mostSkyMaps);
-}
-
-/// Metres across a map that takes in all of the object from any side.
-double mapSpan(const Box3f& bounds) { return 1.02 * length(bounds.size().as<double>()); }
+constexpr int seenEdge = 96;                 // pixels along the shorter side of the picture that tells what is seen
 
 /// Four rows as a matrix by columns.
 Matrix4 matrixOf(const std::array<std::array<double, 4>, 4>& rows) {
@@ -36,26 +25,6 @@ Matrix4 matrixOf(const std::array<std::array<double, 4>, 4>& rows) {
     for (size_t r = 0; r < 4; ++r)
         for (size_t c = 0; c < 4; ++c) matrix[c * 4 + r] = static_cast<float>(rows[r][c]);
     return matrix;
-}
-
-/// Looks along −`towardsLight` at a ball of diameter `span`: all of it maps to lo … hi in the three components.
-Matrix4 lightMatrix(Vec3d towardsLight, Vec3d centre, double span, double lo, double hi) {
-    const Vec3d right =
-        normalized(cross(std::abs(towardsLight.y) > 0.99 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, towardsLight));
-    const Vec3d up = cross(towardsLight, right);
-    const double scale = (hi - lo) / span, middle = (hi + lo) / 2;
-    const auto row = [&](Vec3d axis) {
-        const Vec3d a = axis * scale;
-        return std::array<double, 4>{a.x, a.y, a.z, middle - dot(a, centre)};
-    };
-    return matrixOf({row(right), row(up), row(-towardsLight), {0, 0, 0, 1}});
-}
-
-/// Directions spread evenly over the sphere (Fibonacci's lattice).
-Vec3d skyDirection(size_t i, size_t count) {
-    const double y = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count), r = std::sqrt(1 - y * y);
-    const double angle = static_cast<double>(i) * 2.39996322972865332;
-    return {r * std::cos(angle), y, r * std::sin(angle)};
 }
 
 /// Clip space of one tile of the picture: x0, y0 its lower left pixel from the bottom left.
@@ -182,9 +151,9 @@ Result<std::shared_ptr<const MeshPrograms>> MeshPrograms::create() {
     };
     for (const Wanted& wanted :
          {Wanted{programs->depth, "mesh", "depth"}, Wanted{programs->mask, "screen", "mask"},
-          Wanted{programs->blur, "screen", "blur_depth"}, Wanted{programs->color, "mesh", "mesh_color"},
-          Wanted{programs->section, "mesh", "mesh_section"}, Wanted{programs->backdrop, "screen", "backdrop"},
-          Wanted{programs->crease, "crease", "crease_color"}}) {
+          Wanted{programs->position, "mesh", "position"}, Wanted{programs->blur, "screen", "blur_depth"},
+          Wanted{programs->color, "mesh", "mesh_color"}, Wanted{programs->section, "mesh", "mesh_section"},
+          Wanted{programs->backdrop, "screen", "backdrop"}, Wanted{programs->crease, "crease", "crease_color"}}) {
         Result<Program> made = Program::draw(shaderText(wanted.vertex), shaderText(wanted.fragment));
         if (!made) return made.error();
         wanted.program = std::move(*made);
@@ -200,9 +169,8 @@ MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshProgram
       owners_(upload(mesh.owners)),
       hardEdges_(mesh.hardEdges),
       materials_(uploadMaterials(mesh.materials)),
-      textured_(!mesh.textures.frames.empty()) {
-    maps_.skyCount = skyMapsFor(triangleCount_, mostSkyMaps);
-    makeMaps();
+      textured_(!mesh.textures.frames.empty()),
+      light_(bounds_, skyMapsFor(triangleCount_, mostSkyMaps)) {
     if (!textured_) return;
     frameOfTriangle_ = TexelBuffer::of(mesh.textures.frameOfTriangle, 1);
     frames_ = Buffer::of<MeshTextures::Frame>(mesh.textures.frames);
@@ -216,23 +184,11 @@ MeshScene::MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, c
       bounds_(bounds),
       triangleCount_(triangles.count),
       owners_(upload(ownersFrom(owners, provenance))),
-      materials_(uploadMaterials(provenance.materials)) {
-    maps_.skyCount = leastSkyMaps;
+      materials_(uploadMaterials(provenance.materials)),
+      light_(bounds_, leastSkyMaps) {
     const std::vector<float> flat(triangleCount_ * 3 + 1, 0.0f);
     triangles_ = TriangleBuffers::of(std::move(triangles.positions), std::move(triangles.normals),
                                      Buffer::of<float>(flat), std::move(triangles.indices));
-    makeMaps();
-}
-
-void MeshScene::makeMaps() {
-    maps_.sun = MapStack::create(MapStack::Kind::Depth, sunMapEdge, 1);
-    maps_.sky = MapStack::create(MapStack::Kind::Number, skyMapEdge, static_cast<int>(maps_.skyCount));
-    maps_.skyDepth = MapStack::create(MapStack::Kind::Depth, skyMapEdge, 1);
-    std::vector<Matrix4> matrices;
-    for (size_t i = 0; i < maps_.skyCount; ++i)
-        matrices.push_back(
-            lightMatrix(skyDirection(i, maps_.skyCount), bounds_.centre().as<double>(), mapSpan(bounds_), 0, 1));
-    maps_.matrices = Buffer::of<Matrix4>(matrices);
 }
 
 /// All triangles, in batches.
@@ -248,16 +204,8 @@ Status MeshScene::drawTriangles(const Program& program, Progress* progress) cons
     return Done{};
 }
 
-Status MeshScene::drawMap(const MapStack& map, Vec3d towardsLight, Progress* progress) const {
-    setDepthTest(true);
-    map.bindCleared(0);
-    const Program& depth = programs_->depth;
-    depth.set("clipFromWorld", lightMatrix(towardsLight, bounds_.centre().as<double>(), mapSpan(bounds_), -1, 1));
-    return drawTriangles(depth, progress);
-}
-
 Status MeshScene::light(Progress* progress) {
-    if (progress) progress->begin("light", (maps_.skyCount + 1) * (triangleCount_ / batchTriangles + 1));
+    if (progress) progress->begin("light", (light_.skyCount() + 1) * (triangleCount_ / batchTriangles + 1));
     for (;;) {
         const Result<bool> all = lightMore(progress);
         if (!all) return all.error();
@@ -266,30 +214,68 @@ Status MeshScene::light(Progress* progress) {
 }
 
 Result<bool> MeshScene::lightMore(Progress* progress) {
-    if (maps_.drawn > maps_.skyCount) return true;
-    if (maps_.drawn == 0) {
-        if (Status s = drawMap(maps_.sun, sunDirection().as<double>(), progress); !s) return s.error();
-    } else {
-        const size_t sky = maps_.drawn - 1;
-        if (Status s = drawMap(maps_.skyDepth, skyDirection(sky, maps_.skyCount), progress); !s) return s.error();
-        setDepthTest(false);
-        maps_.sky.bindCleared(static_cast<int>(sky));
-        maps_.skyDepth.bindTexture(0);
-        programs_->blur.use();
-        ScreenTriangle().draw();
-    }
-    return ++maps_.drawn > maps_.skyCount;
+    return light_.drawNext({programs_->depth, programs_->blur},
+                           [&](const Program& program) { return drawTriangles(program, progress); });
 }
 
-void MeshScene::setLight(const Program& program, bool sky) const {
-    const Vec3d centre = bounds_.centre().as<double>();
-    const double span = mapSpan(bounds_);
-    program.set("ownerOfTriangle", 0);
-    program.set("sunMap", 1);
-    program.set("skyMaps", 2);
-    program.set("sunFromWorld", lightMatrix(sunDirection().as<double>(), centre, span, 0, 1));
-    program.set("mapSpan", static_cast<float>(span));
-    program.set("skyCount", sky ? static_cast<int>(maps_.skyCount) : 0);
+Status MeshScene::lightFor(const PictureOptions& options, Progress* progress) {
+    std::vector<Vec3f> seen;
+    if (options.camera.lamp_m == 0) {
+        auto found = seenFrom(options, progress);
+        if (!found) return found.error();
+        seen = std::move(*found);
+    }
+    return light_.fit(seen, options.camera.eye, {programs_->depth, programs_->blur},
+                      [&](const Program& program) { return drawTriangles(program, progress); });
+}
+
+/// Places on the mesh, and on the ground about it, at pixels of a small picture.
+Result<std::vector<Vec3f>> MeshScene::seenFrom(const PictureOptions& options, Progress* progress) const {
+    PictureOptions small = options;
+    const double scale = double(seenEdge) / std::min(options.width, options.height);
+    small.width = static_cast<int>(std::ceil(scale * options.width));
+    small.height = static_cast<int>(std::ceil(scale * options.height));
+    const Result<ColorTarget> target = ColorTarget::create(small.width, small.height, 1);
+    if (!target) return target.error();
+    const View view = viewOf(small.camera, small.width, small.height);
+    target->bind();
+    setDepthTest(true);
+    programs_->position.set("eye", view.eye.as<float>());
+    programs_->position.set("clipFromWorld", clipOf(small, 0, 0, small.width, small.height));
+    if (Status s = drawTriangles(programs_->position, progress); !s) return s.error();
+    const std::vector<float> pixels = target->read();
+    Box3f about = bounds_;  // where the mesh's shadow may lie
+    about = hull(about, about.lo - Vec3f{1, 0, 1} * about.size().y);
+    about = hull(about, about.hi + Vec3f{1, 0, 1} * about.size().y);
+    std::vector<Vec3f> seen;
+    for (int y = 0; y < small.height; ++y)
+        for (int x = 0; x < small.width; ++x) {
+            const float* pixel = &pixels[(size_t(y) * size_t(small.width) + size_t(x)) * 4];
+            if (pixel[3] > 0) {
+                seen.push_back(view.eye.as<float>() + Vec3f{pixel[0], pixel[1], pixel[2]});
+                continue;
+            }
+            const Vec3f ray = rayThrough(view, small, {x + 0.5, small.height - y - 0.5});
+            const float t = (bounds_.lo.y - static_cast<float>(view.eye.y)) / ray.y;
+            Vec3f place = view.eye.as<float>() + ray * t;
+            place.y = bounds_.lo.y;
+            if (options.ground && t > 0 && std::isfinite(t) && about.contains(place)) seen.push_back(place);
+        }
+    return seen;
+}
+
+/// Clip space of a part of the picture whose lower left pixel is (left, low).
+Matrix4 MeshScene::clipOf(const PictureOptions& options, double left, double low, int width, int height) const {
+    const View view = viewOf(options.camera, options.width, options.height);
+    const double size = length(bounds_.size().as<double>()), away = length(bounds_.centre().as<double>() - view.eye);
+    const double near = nearest(view.eye), far = near + 2 * size + away;
+    return tileMatrix(view, options, near, far, left, low, width, height);
+}
+
+/// How near to an eye something is drawn, metres.
+double MeshScene::nearest(Vec3d eye) const {
+    const double size = length(bounds_.size().as<double>());
+    return std::max(length(bounds_.centre().as<double>() - eye) - size / 2, 1e-3 * size);
 }
 
 void MeshScene::bindTextures(const Program& program) const {
@@ -318,26 +304,20 @@ void MeshScene::drawMask(const Subsample& subsample, int columns) const {
 Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
                        Progress* progress, const Subsample& subsample) const {
     const View view = viewOf(options.camera, options.width, options.height);
-    const double size = length(bounds_.size().as<double>()), away = length(bounds_.centre().as<double>() - view.eye);
-    const double near = std::max(away - size / 2, 1e-3 * size), far = near + 2 * size + away;
-    // Inside a hollow no sky is seen: the lamp does it alone.
-    const bool sky = maps_.drawn > maps_.skyCount && options.camera.lamp_m == 0;
     const Program &color = style.section ? programs_->section : programs_->color, &backdrop = programs_->backdrop;
     for (const Program* program : {&color, &backdrop}) {
         setScene(*program, bounds_, options);
-        setLight(*program, sky);
+        program->set("ownerOfTriangle", 0);
+        light_.bind(*program, options.camera.lamp_m == 0);  // inside a hollow no sky is seen: the lamp does it alone
     }
     target.bind();
     setDepthTest(true);
     drawMask(subsample, target.width);
     owners_.bind(0);
-    maps_.sun.bindTexture(1);
-    maps_.sky.bindTexture(2);
-    maps_.matrices.bindStorage(6);
     materials_.bindStorage(4);
     bindTextures(color);
     const double left = x0 + subsample.right, low = y0 - subsample.down;
-    const Matrix4 clipFromWorld = tileMatrix(view, options, near, far, left, low, target.width, target.height);
+    const Matrix4 clipFromWorld = clipOf(options, left, low, target.width, target.height);
     if (!style.section && !subsample.wanted) {  // depth first, for shading what is hidden costs as much as what is seen
         const WithoutColor depthAlone;
         programs_->depth.set("clipFromWorld", clipFromWorld);
@@ -360,7 +340,8 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
         if (Status s = drawTriangles(color, progress); !s) return s;
     }
     if (style.look != MeshLook::Creases) return Done{};
-    return drawCreases({clipFromWorld, view.eye.as<float>(), static_cast<float>(near)}, target, style, progress);
+    return drawCreases({clipFromWorld, view.eye.as<float>(), static_cast<float>(nearest(view.eye))}, target, style,
+                       progress);
 }
 
 Status MeshScene::drawCreases(const Projection& from, const ColorTarget& target, const MeshStyle& style,

@@ -1,4 +1,4 @@
-// A mesh on the GPU under the field's light: soft sun shadow from one depth map, sky visibility from many.
+// A mesh on the GPU under the field's light: soft sun shadow from few depth maps, sky visibility from many.
 // Enters: a mesh and whose its triangles are. Leaves: draws into a target. Assumes a current GL 4.3 context for all but
 // `prepareMesh`, and objects of at most 2³² triangles.
 #pragma once
@@ -10,6 +10,7 @@
 #include "viewer/render/crease_lines.h"
 #include "viewer/render/draw.h"
 #include "viewer/render/gpu.h"
+#include "viewer/render/mesh_light.h"
 #include "viewer/render/mesh_style.h"
 #include "viewer/render/mesh_textures.h"
 
@@ -37,7 +38,7 @@ Result<PreparedMesh> prepareMesh(const mesh::Mesh& mesh, const Provenance& prove
 
 /// The shaders that draw meshes.
 struct MeshPrograms {
-    Program depth, mask, blur, color, section, backdrop, crease;  // section: the colour of what is cut open
+    Program depth, mask, position, blur, color, section, backdrop, crease;  // section: the colour of what is cut open
     static Result<std::shared_ptr<const MeshPrograms>> create();
 };
 
@@ -64,6 +65,8 @@ public:
     /// Draws the next map: first the sun's, then those of the sky, which count once all are there. True when none is
     /// left.
     Result<bool> lightMore(Progress* progress);
+    /// Draws finer maps for what a picture shows, in place of those for the last one; none inside a hollow.
+    Status lightFor(const PictureOptions& options, Progress* progress);
     /// The part of the picture whose lower left pixel, from the bottom left, is (x0, y0), as large as `target`.
     Status draw(const ColorTarget& target, int x0, int y0, const PictureOptions& options, const MeshStyle& style,
                 Progress* progress, const Subsample& subsample = {}) const;
@@ -71,10 +74,10 @@ public:
     const Box3f& bounds() const { return bounds_; }
 
 private:
-    void makeMaps();
+    Result<std::vector<Vec3f>> seenFrom(const PictureOptions& options, Progress* progress) const;
     Status drawTriangles(const Program& program, Progress* progress) const;
-    Status drawMap(const MapStack& map, Vec3d towardsLight, Progress* progress) const;
-    void setLight(const Program& program, bool sky) const;
+    double nearest(Vec3d eye) const;
+    Matrix4 clipOf(const PictureOptions& options, double left, double low, int width, int height) const;
     void bindTextures(const Program& program) const;
     /// Nothing is drawn where a subsample isn't wanted.
     void drawMask(const Subsample& subsample, int columns) const;
@@ -98,13 +101,7 @@ private:
     TexelBuffer frameOfTriangle_;
     Buffer frames_;
     PictureStack colorPictures_, numberPictures_;
-    /// Maps of shadow and sky.
-    struct LightMaps {
-        MapStack sun, sky, skyDepth;
-        Buffer matrices;  // of the sky's
-        size_t skyCount = 0, drawn = 0;
-    };
-    LightMaps maps_;
+    MeshLight light_;
 };
 
 }  // namespace sgm::render

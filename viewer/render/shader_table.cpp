@@ -15,6 +15,7 @@ const std::vector<Shader>& shaders() {
         {"screen", "vert", false, {"screen"}},
         {"crease", "vert", false, {"crease"}},
         {"crease_color", "frag", false, {"crease_color"}},
+        {"position", "frag", false, {"position"}},
         {"depth", "frag", false, {"depth"}},
         {"mask", "frag", false, {"mask"}},
         {"encode", "frag", false, {"encode"}},

@@ -8,9 +8,10 @@ void main() {
     float t = groundDistance(eye, direction);
     vec3 light = skySeen(direction);
     if (t >= 0.0) {
+        const vec3 up = vec3(0.0, 1.0, 0.0);
         vec3 p = eye + t * direction;
         float away = length(max(abs(p - sceneCentre) - sceneHalf, vec3(0.0)).xz);
-        light = shadeGround(p, -direction, t, sunlightAt(p), opennessAt(p, vec3(0.0, 1.0, 0.0), away));
+        light = shadeGround(p, -direction, t, sunlightAt(p, up), opennessAt(p, up, away));
     }
     color = vec4(tonemap(light), 1.0);
 }

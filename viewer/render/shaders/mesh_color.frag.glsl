@@ -55,9 +55,8 @@ vec3 materialLight(int triangle, vec3 normal, vec3 toEye) {
     int m = int(texelFetch(ownerOfTriangle, triangle).x) * 2;
     Surface s = Surface(worldPosition, normal, materials[m].rgb, materials[m].a, materials[m + 1].x);
     cover(triangle / 4, s);
-    vec3 start = worldPosition + normal * (1.5e-3 * mapSpan);
-    float sunlight = lampReach == 0.0 && dot(s.normal, sunDirection) > 0.0 ? sunlightAt(start) : 0.0;
-    vec3 light = shade(s, toEye, sunlight, opennessAt(start, normal, 0.0), lampReach == 0.0 ? 1.0 : 0.12);
+    float sunlight = lampReach == 0.0 && dot(s.normal, sunDirection) > 0.0 ? sunlightAt(worldPosition, normal) : 0.0;
+    vec3 light = shade(s, toEye, sunlight, opennessAt(worldPosition, normal, 0.0), lampReach == 0.0 ? 1.0 : 0.12);
     return tonemap(hazed(light, length(eye - worldPosition), skyColor(-toEye)));
 }
 

@@ -1,45 +1,66 @@
-// Shadow and sky visibility of a mesh: a depth map of the sun, and an exponential map (Annen et al. 2008) for each of
+// Shadow and sky visibility of a mesh: depth maps of the sun, and an exponential map (Annen et al. 2008) for each of
 // many directions of sky, whose blur makes many sharp shadows one soft one.
-uniform sampler2DArray sunMap;   // depth, one layer
-uniform sampler2DArray skyMaps;  // mean of exp(skySharpness · depth)
-uniform mat4 sunFromWorld;          // to 0 … 1 in all three
+uniform sampler2DArray sunMaps;      // depths, wide maps first
+uniform int sunCount;
+uniform mat4 sunFromWorld[3];        // to 0 … 1 in all three; narrow maps first
+uniform float sunSpan[3];            // metres across
+uniform float mapSpan;               // metres across a map of all of the mesh, and along its depth
+uniform float widestPenumbra;        // metres
+uniform sampler2DArray skyMaps;      // mean of exp(skySharpness · depth)
 const float skySharpness = 80.0;
 layout(std430, binding = 6) readonly buffer SkyMatrices { mat4 skyFromWorld[]; };
-uniform int skyCount;               // 0: everything is open
-uniform float mapSpan;              // metres across a map, and along its depth
-
-bool outsideMap(vec3 at) { return any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0))); }
+uniform int skyCount;                // 0: everything is open
 
 /// 0 … 1, another one at every pixel (interleaved gradient noise: Jimenez 2014).
 float pixelNoise() { return fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))); }
 
-/// Place i of n of Vogel's spiral over the unit disc, turned by `turn` radians.
-vec2 vogel(int i, float n, float turn) {
-    float angle = turn + float(i) * 2.399963;
-    return sqrt((float(i) + 0.5) / n) * vec2(cos(angle), sin(angle));
-}
+/// Whether a place is so far within a map.
+bool isWithin(vec2 at, float margin) { return all(greaterThan(at, vec2(margin))) && all(lessThan(at, vec2(1.0 - margin))); }
+
+vec2 turned(float angle) { return vec2(cos(angle), sin(angle)); }
 
 /// Share of the sun's disc that p sees: the mean height of what stands before it sets how soft the edge is
 /// (Fernando, "Percentage-Closer Soft Shadows", 2005), over points of Vogel's spiral.
-float sunlightAt(vec3 p) {
-    const float sunRadius = 0.035;  // radians
-    vec3 at = (sunFromWorld * vec4(p, 1.0)).xyz;
-    if (outsideMap(at)) return 1.0;
-    at.z = min(at.z, 1.0);
-    float search = 0.012, blockers = 0.0, height = 0.0, turn = 6.2831853 * pixelNoise();
-    for (int i = 0; i < 16; ++i) {
-        float depth = texture(sunMap, vec3(at.xy + search * vogel(i, 16.0, turn), 0.0)).x;
-        if (depth < at.z - 1e-3) {
-            blockers += 1.0;
-            height += at.z - depth;
+float sunlightAt(vec3 p, vec3 normal) {
+    const float sunRadius = 0.035;   // radians
+    const float leastHeight = 10.0;  // of what casts a shadow, times how far it is aside: lower is the surface itself
+    const int searched = 16, asked = 32;
+    for (int map = 0; map < sunCount; ++map) {
+        float span = sunSpan[map], texel = span / float(textureSize(sunMaps, 0).x), layer = float(sunCount - 1 - map);
+        vec3 at = (sunFromWorld[map] * vec4(p + normal * (1.5 * texel), 1.0)).xyz;
+        at.z = min(at.z, 1.0);
+        float search = clamp(sunRadius * at.z * mapSpan, texel, widestPenumbra);
+        if (!isWithin(at.xy, search / span)) continue;
+        float blockers = 0.0, height = 0.0, turn = 6.2831853 * pixelNoise();
+        for (int i = 0; i < searched; ++i) {  // denser about the middle: what is low casts a sharp shadow
+            float aside = search * pow(float(i) / float(searched - 1), 1.5);
+            float above = (at.z - texture(sunMaps, vec3(at.xy + aside / span * turned(turn + float(i) * 2.399963), layer)).x) * mapSpan;
+            if (above > 0.25 * texel && sunRadius * above + texel > aside && above > leastHeight * (aside - texel)) {
+                blockers += 1.0;
+                height += above;
+            }
         }
+        if (blockers == 0.0) return 1.0;
+        float radius = clamp(sunRadius * height / blockers, 1.2 * texel, search), open = 0.0;
+        for (int i = 0; i < asked; ++i) {
+            float aside = radius * sqrt((float(i) + 0.5) / float(asked));
+            float above = (at.z - texture(sunMaps, vec3(at.xy + aside / span * turned(turn + float(i) * 2.399963), layer)).x) * mapSpan;
+            open += above > max(0.25 * texel, leastHeight * (aside - texel)) ? 0.0 : 1.0;
+        }
+        return open / float(asked);
     }
-    if (blockers == 0.0) return 1.0;
-    float radius = clamp(sunRadius * height / blockers, 0.0006, search);
-    float open = 0.0;
-    for (int i = 0; i < 32; ++i)
-        open += step(at.z - 8e-4 - radius * 0.3, texture(sunMap, vec3(at.xy + radius * vogel(i, 32.0, turn), 0.0)).x);
-    return open / 32.0;
+    return 1.0;
+}
+
+/// How much of direction i of the sky a place of its map sees: of each of the four texels around it, then between them. Between
+/// their numbers, which differ by powers, texels would show as blocks.
+float skySeen(vec3 at, int i) {
+    const float shift = 0.003;  // of the map's depth, towards the light
+    if (!isWithin(at.xy, 0.0)) return 1.0;
+    vec2 part = fract(at.xy * vec2(textureSize(skyMaps, 0).xy) - 0.5);
+    vec4 seen = textureGather(skyMaps, vec3(at.xy, float(i))) * exp(-skySharpness * (min(at.z, 1.0) - shift));
+    seen = min(seen * sqrt(seen), 1.0);  // half as sharp again: what touches hides more
+    return mix(mix(seen.w, seen.z, part.x), mix(seen.x, seen.y, part.x), part.y);
 }
 
 /// Share of the sky over `normal` that p sees, weighted by the cosine. A direction stands for a patch of sky, so what is
@@ -54,15 +75,12 @@ float opennessAt(vec3 p, vec3 normal, float away) {
         // The third row points away from the light, 1 / mapSpan long.
         float cosine = -dot(normal, vec3(m[0].z, m[1].z, m[2].z)) * mapSpan;
         if (cosine <= 0.0) continue;
-        vec3 start = p;
+        vec3 start = p + normal * (1.5e-3 * mapSpan);
         if (softness > 0.0) {
             float turn = 6.2831853 * fract(noise + 0.61803399 * float(i)), far = softness * sqrt(fract(noise * 7.0 + 0.75487767 * float(i)));
             start += far * vec3(cos(turn), 0.0, sin(turn));
         }
-        vec3 at = (m * vec4(start, 1.0)).xyz;
-        float seen = 1.0;
-        if (!outsideMap(at)) seen = min(texture(skyMaps, vec3(at.xy, float(i))).x * exp(-skySharpness * (min(at.z, 1.0) - 0.01)), 1.0);
-        open += cosine * seen;
+        open += cosine * skySeen((m * vec4(start, 1.0)).xyz, i);
         all += cosine;
     }
     return mix(0.06, 1.0, open / all);
