@@ -45,6 +45,36 @@ pipeline::ModelChoice with(const MutateRequest& request, const std::vector<Named
     return choice;
 }
 
+Result<pipeline::MeshedModel> meshOf(const MutateRequest& request, const Model& model, int halvings, Context& context) {
+    GridRequest grid;
+    grid.resolution = request.resolution;
+    grid.halvings = halvings;
+    grid.threads = request.threads;
+    return makeMesh(model, grid, context);
+}
+
+/// Why a model isn't worth a look, or nothing: by a mesh of cells as they are, which takes little time, and by one of
+/// halved cells where that finds a fault or doesn't show the gaps. Featureless ones are looked at again if that is a
+/// fault.
+Result<std::string> judge(const MutateRequest& request, const Model& model, bool isBareFault, Context& context) {
+    for (const int halvings : {0, GridRequest{}.halvings}) {
+        const auto meshed = meshOf(request, model, halvings, context);
+        if (!meshed.ok()) return meshed.error();
+        const std::string why = degenerate(meshed->mesh, meshed->grid.cell_m).value_or("");
+        const bool isGood = why.empty() || (why == featureless && !isBareFault);
+        if (halvings > 0 || (isGood && !mayFloat(model.derivation))) return why;
+    }
+    return std::string();
+}
+
+/// What the mesh shows, as other commands tell it.
+Result<std::vector<pipeline::MeshWarning>> warningsOf(const MutateRequest& request, const Model& model,
+                                                      Context& context) {
+    const auto meshed = meshOf(request, model, GridRequest{}.halvings, context);
+    if (!meshed.ok()) return meshed.error();
+    return pipeline::meshWarnings(model, *meshed, context);
+}
+
 /// The model, or why it isn't one worth showing.
 struct Tried {
     std::optional<Model> model;
@@ -63,20 +93,17 @@ Result<Tried> tried(const MutateRequest& request, const std::shared_ptr<const ru
         if (model.error().kind == Error::Kind::Cancelled) return model.error();
         return Tried{{}, "empty", {}, false};
     }
-    GridRequest grid;
-    grid.resolution = request.resolution;
-    grid.threads = request.threads;
-    const auto meshed = makeMesh(*model, grid, context);
-    if (!meshed.ok()) return meshed.error();
+    auto judged = judge(request, *model, values.empty() || !mayBeFeatureless, context);
+    if (!judged.ok()) return judged.error();
     std::vector<pipeline::MeshWarning> warnings;
     if (values.empty() && !request.quiet) {
-        auto found = pipeline::meshWarnings(*model, *meshed, context);
+        auto found = warningsOf(request, *model, context);
         if (!found.ok()) return found.error();
         warnings = std::move(*found);
     }
-    const auto why = degenerate(meshed->mesh, meshed->grid.cell_m);
-    const bool isFeatureless = why == featureless;
-    if (why && !(isFeatureless && mayBeFeatureless)) return Tried{{}, *why, std::move(warnings), isFeatureless};
+    const bool isFeatureless = *judged == featureless;
+    if (!judged->empty() && !(isFeatureless && mayBeFeatureless))
+        return Tried{{}, std::move(*judged), std::move(warnings), isFeatureless};
     return Tried{std::move(*model), {}, std::move(warnings), isFeatureless};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "grammar/derive/support.h"
 #include "modeler/core/random.h"
 #include "viewer/document/param_rows.h"
 
@@ -118,6 +119,22 @@ std::optional<std::string> degenerate(const mesh::Mesh& mesh, float cell_m) {
     if (floating > 0.05 * all) return "floating";
     if (shareOnFewPlanes(mesh, cell_m) > 0.97) return std::string(featureless);
     return std::nullopt;
+}
+
+bool mayFloat(const derive::Derivation& derivation) {
+    constexpr double littleShare = 0.01;  // of the volume; boxes may be larger than what is in them
+    const derive::ShapeTree& tree = derivation.tree;
+    const std::vector<uint32_t> groupOf = derive::touchingGroups(tree);
+    const std::vector<bool> floats = derive::floatingGroups(tree, groupOf);
+    double all = 0, floating = 0;
+    for (derive::ShapeId s = 0; s < groupOf.size(); ++s) {
+        if (groupOf[s] == derive::none) continue;
+        const Vec3d size = tree.shapes[s].scope.size;
+        const double volume = size.x * size.y * size.z;
+        all += volume;
+        if (floats[groupOf[s]]) floating += volume;
+    }
+    return floating > littleShare * all;
 }
 
 }  // namespace sgm::cli

@@ -28,4 +28,8 @@ inline constexpr std::string_view featureless = "featureless";
 /// good one. `cell_m` is that of the mesh.
 std::optional<std::string> degenerate(const mesh::Mesh& mesh, float cell_m);
 
+/// Whether more than a hundredth of a model, by the boxes of its solids, touches nothing that stands: a mesh tells then
+/// whether it floats, and of narrow gaps only one of halved cells. O(n log n).
+bool mayFloat(const derive::Derivation& derivation);
+
 }  // namespace sgm::cli
