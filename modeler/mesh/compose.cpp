@@ -22,6 +22,8 @@ struct InputCorner {
 };
 
 constexpr float sameDirection = 0.9f;    ///< cosine between corners of one smooth fan
+constexpr float leastFacing = 0.5f;      ///< cosine between a corner's normal and its triangle
+constexpr double needleShape = 0.01;     ///< doubled area by the square of the longest side
 constexpr float sameNormal = 1 - 1e-6f;  ///< cosine between normals that needn't be told apart
 
 /// The normals of the input's corners at vertices of curved regions where some corner has a normal of its own.
@@ -146,11 +148,15 @@ private:
 
     Vec3f normalAt(const SimpleTriangle& t, uint32_t v) const {
         if (planes_[t.region].planar()) return planes_[t.region].normal.as<float>();
+        const Vec3d a = flat_.positions[t.corners.x].as<double>(), ab = flat_.positions[t.corners.y].as<double>() - a,
+                    ac = flat_.positions[t.corners.z].as<double>() - a, across = cross(ab, ac);
+        const Vec3f face = normalized(across).as<float>();
         const std::span<const InputCorner> corners = corners_.at(v, t.region);
-        if (corners.empty()) return normalOfVertex(input_, flat_, v);
-        const Vec3d a = flat_.positions[t.corners.x].as<double>(), b = flat_.positions[t.corners.y].as<double>(),
-                    c = flat_.positions[t.corners.z].as<double>();
-        return normalOf(corners, normalized(cross(b - a, c - a)).as<float>());
+        const Vec3f wanted = corners.empty() ? normalOfVertex(input_, flat_, v) : normalOf(corners, face);
+        // The vertex may have had a small face of the region alone. Needles take what is smooth: they face anywhere.
+        const bool isNeedle =
+            !(length(across) > needleShape * std::max({dot(ab, ab), dot(ac, ac), dot(ac - ab, ac - ab)}));
+        return isNeedle || dot(wanted, face) > leastFacing ? wanted : face;
     }
 
     const Mesh& input_;
