@@ -1,7 +1,5 @@
 // `sgm mutate`: degenerate variations are left out, the same sheet comes again, and the chosen one written back as a
 // style is the same model. And what goes with facades: --keep and --view ids.
-#include <chrono>
-#include <cmath>
 
 #include "tests/cli/program.h"
 
@@ -99,25 +97,6 @@ TEST_F(Cli, MutateSeesGapsThatNeedHalvedCells) {
     const Outcome run = sgm("mutate " + file + " --rows 2 --cols 3 --spread 1 --resolution 24");
     EXPECT_NE(run.out.find(": floating"), std::string::npos) << run.out;
     EXPECT_EQ(run.out.find("kind=bad"), std::string::npos) << run.out;
-}
-
-TEST_F(Cli, MutateJudgesGoodOnesByCellsAsTheyAre) {
-    const std::string file = grammar(
-        "param wide = 4 in 2..8.0\nstart House -> cube size (30, 4, 30) + Panes size (28, 6, 28) at +y\n"
-        "rule Panes -> split x { { ~1m: split z { { ~1m: Pane }* } }* }\n"
-        "rule Pane -> cube size (.06, 100%, .7) + cube size (.7, 100%, .06)\n");
-    const auto seconds = [&](const std::string& command) {
-        double least = INFINITY;
-        for (int i = 0; i < 3; ++i) {
-            const auto before = std::chrono::steady_clock::now();
-            EXPECT_EQ(sgm(command).code, 0);
-            least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
-        }
-        return least;
-    };
-    const double judged = seconds("mutate " + file + " --rows 1 --cols 1 --resolution 48 -q"),
-                 halved = seconds("build " + file + " --resolution 48 --tolerance 0 -q -o " + path("a.ply"));
-    EXPECT_LT(judged, 0.7 * halved);
 }
 
 TEST_F(Cli, MutateSaysWhatIsWrong) {
