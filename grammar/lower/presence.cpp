@@ -14,9 +14,10 @@ constexpr int fewestParts = 4, mostParts = 64;  ///< of a side of a triangle tha
 
 }  // namespace
 
-Presence::Presence(const mesh::Mesh& mesh, std::span<const Asked> asked, std::span<const Vec3f> points, float cell_m) {
-    using Extent = Asked::Extent;
-    for (const Asked& part : asked) perMetre_.push_back(part.extent == Extent::Nothing ? 0 : 1 / part.reach_m);
+Presence::Presence(const mesh::Mesh& mesh, std::span<const Query> queries, std::span<const Vec3f> points,
+                   float cell_m) {
+    using Extent = Query::Extent;
+    for (const Query& part : queries) perMetre_.push_back(part.extent == Extent::Nothing ? 0 : 1 / part.reach_m);
     constexpr OriginId any = 0;
     const float perMetre = 0.5f / cell_m;  // of cells of twice the edge: the eight around a point reach a cell far
     const auto keyAt = [&](Vec3f p) { return keyOf(cellOf(p, perMetre), any); };
@@ -32,7 +33,7 @@ Presence::Presence(const mesh::Mesh& mesh, std::span<const Asked> asked, std::sp
     const std::vector<const Vec3f*> positions = positionsOf(mesh);
     for (const mesh::Chunk& c : mesh.chunks)
         for (size_t t = 0; t < c.origins.size(); ++t) {
-            const Extent extent = asked[c.origins[t]].extent;
+            const Extent extent = queries[c.origins[t]].extent;
             if (extent == Extent::Nothing) continue;
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
             const Vec3f p = *positions[corners[0]], q = *positions[corners[1]], r = *positions[corners[2]];

@@ -17,13 +17,13 @@ namespace sgm::lower {
 class Presence {
 public:
     /// What is asked of a part.
-    struct Asked {
+    struct Query {
         enum class Extent : uint8_t { Nothing, NearPoints, All } extent = Extent::Nothing;
         float reach_m = 0;  ///< how near a triangle has to be, to twice as much
     };
-    /// O(triangles of those parts + points). `asked` is by part. Of parts that are asked about near points only the
+    /// O(triangles of those parts + points). `queries` is by part. Of parts that are asked about near points only the
     /// triangles within a cell of one of `points` count.
-    Presence(const mesh::Mesh& mesh, std::span<const Asked> asked, std::span<const Vec3f> points, float cell_m);
+    Presence(const mesh::Mesh& mesh, std::span<const Query> queries, std::span<const Vec3f> points, float cell_m);
     /// Whether a triangle of the part lies within its reach, to twice that.
     bool isNear(Vec3f p, OriginId part) const;
     /// Whether triangles of the part lie along every line through its scope, which is thinner than a cell of `cell_m`

@@ -278,18 +278,18 @@ void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Pres
 /// Knows where the mesh has the parts, and what is at the sections.
 Presence presenceOf(const mesh::Mesh& mesh, std::span<const Candidate> thin, std::span<const ThinSection> sections,
                     size_t partCount, float cell_m) {
-    using Extent = Presence::Asked::Extent;
-    std::vector<Presence::Asked> asked(partCount);
+    using Extent = Presence::Query::Extent;
+    std::vector<Presence::Query> queries(partCount);
     const float quarter_m = cell_m / 4;
     std::vector<Vec3f> points;
     for (const ThinSection& section : sections)
         for (const ThinSection::Line& line : section.lines)
             for (const ThinSection::Crossing& end : line.ends) {
-                asked[end.owner] = {Extent::NearPoints, quarter_m};
+                queries[end.owner] = {Extent::NearPoints, quarter_m};
                 points.push_back(end.at);
             }
-    for (const Candidate& c : thin) asked[c.part] = {Extent::All, quarter_m};
-    return Presence(mesh, asked, points, cell_m);
+    for (const Candidate& c : thin) queries[c.part] = {Extent::All, quarter_m};
+    return Presence(mesh, queries, points, cell_m);
 }
 
 std::vector<ThinPart> lackedOf(std::span<const Candidate> thin) {
@@ -317,12 +317,12 @@ Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation
         return c.isBox ? c.plateAxis >= 0 : !solid.primitive || solid.primitive->plan != field::PlanUse::None;
     });
     if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
-    std::vector<Presence::Asked> asked(model.shapeOf.size());
+    std::vector<Presence::Query> queries(model.shapeOf.size());
     for (const Candidate& c : thin)
-        asked[c.part] = {
-            Presence::Asked::Extent::All,
+        queries[c.part] = {
+            Presence::Query::Extent::All,
             std::clamp(tornShare * static_cast<float>(minComponent(c.scope.size)), cell_m / 32, cell_m / 4)};
-    const Presence presence(mesh, asked, {}, cell_m);
+    const Presence presence(mesh, queries, {}, cell_m);
     probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();
     return lackedOf(thin);
