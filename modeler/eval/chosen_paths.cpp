@@ -39,15 +39,27 @@ const StepContext& ChosenPaths::run(Points points) {
 }
 
 /// What the points take of two operands: of values as the op does, of names as LabelPass does.
-Choice ChosenPaths::choiceOf(const Instruction& in) const {
+Choice ChosenPaths::choiceOf(const Instruction& in) {
     alignas(vectorFloats * sizeof(float)) std::array<float, pathPoints> numbers[2];
     const float* const a = operandRow(in.a, values_, 1, 0, numbers[0].data());
     const float* const b = operandRow(in.b, values_, 1, 0, numbers[1].data());
     const float margin = tape_.tieMargin();
     const size_t n = values_.count;
-    if (field::traits(in.op).owner == field::ops::Owner::Least)
-        return {~w_.kernels.below(a, 0, b, 0, n), w_.kernels.below(b, 0, a, -margin, n), 0};
-    return {~w_.kernels.below(b, 0, a, 0, n), w_.kernels.below(a, margin, b, 0, n), 0};
+    const auto pinchedOf = [&](Source source) { return isConstant(source) ? 0 : w_.pathPinched[source]; };
+    const uint64_t first = pinchedOf(in.a), second = pinchedOf(in.b);
+    const bool least = field::traits(in.op).owner == field::ops::Owner::Least;
+    Choice choice = least ? Choice{~w_.kernels.below(a, 0, b, 0, n), w_.kernels.below(b, 0, a, -margin, n), 0}
+                          : Choice{~w_.kernels.below(b, 0, a, 0, n), w_.kernels.below(a, margin, b, 0, n), 0};
+    if (least && first != 0) choice.names |= first & ~second & w_.kernels.below(b, 0, a, margin, n);
+    uint64_t& pinched = w_.pathPinched[in.out];
+    pinched = (first & ~choice.names) | (second & choice.names);
+    if (!least && !isConstant(in.a) && !isConstant(in.b)) {
+        alignas(vectorFloats * sizeof(float)) std::array<float, pathPoints> sums, zeros{};
+        for (size_t i = 0; i < n; ++i) sums[i] = a[i] + b[i];
+        pinched |= w_.kernels.below(sums.data(), 0, zeros.data(), margin, n) &
+                   w_.kernels.below(zeros.data(), -margin, sums.data(), 0, n);
+    }
+    return choice;
 }
 
 /// Values of all instructions, and what minima and maxima take.
@@ -61,9 +73,13 @@ void ChosenPaths::findChoices(Points points) {
         w_.kernels.load(from[axis], points.n, c.count, copies + axis * pathPoints);
         c.coordinates[axis] = copies + axis * pathPoints;
     }
+    w_.pathPinched.assign(tape_.registerCount(), 0);
     for (size_t i = 0; i < tape_.size(); ++i) {
         const Instruction& in = tape_.code()[i];
-        if (field::traits(in.op).selects) w_.choices[i] = choiceOf(in);
+        if (field::traits(in.op).selects)
+            w_.choices[i] = choiceOf(in);
+        else
+            w_.pathPinched[in.out] = 0;
         w_.kernels.values[static_cast<size_t>(in.op)](in, c);
     }
 }

@@ -27,7 +27,7 @@ private:
     void findChoices(Points points);
     void findLive(size_t n);
     void runLive(size_t n);
-    Choice choiceOf(const Instruction& in) const;
+    Choice choiceOf(const Instruction& in);
     uint64_t derivativesOfSecond(const Instruction& in, const Choice& choice) const;
     void takeValues(const Instruction& in, const Choice& choice) const;
 

@@ -23,7 +23,7 @@ constexpr uint32_t joinIfBoth(uint32_t a, uint32_t b) { return a == b || b == 0 
 
 LabelPass::LabelPass(const Tape& tape, Workspace::Impl& workspace, size_t planes)
     : tape_(tape), planes_(planes), names_(workspace.registerNames) {
-    const size_t room = 2 * maxBlock * tape.registerCount();
+    const size_t room = 3 * maxBlock * tape.registerCount();
     if (workspace.nameRows.size() < room) workspace.nameRows.resize(room);
     rows_ = workspace.nameRows.data();
     names_.assign(tape.registerCount(), {});
@@ -76,7 +76,7 @@ void LabelPass::choose(const Instruction& in, const Source* sources, const StepC
     const Operand o[] = {operand(in, sources, 0, c), operand(in, sources, 1, c)};
     const size_t n = c.count;
     const float margin = tape_.tieMargin();
-    std::array<uint32_t, maxBlock> second;  // all bits or none
+    uint32_t* const second = takesSecond_.data();
     const auto compare = [&](auto a, auto b) {
         for (size_t i = 0; i < n; ++i) second[i] = (least ? b(i) < a(i) - margin : b(i) > a(i) + margin) ? ~0u : 0u;
     };
@@ -90,8 +90,26 @@ void LabelPass::choose(const Instruction& in, const Source* sources, const StepC
         compare(number(o[0]), row(o[1]));
     else
         compare(number(o[0]), number(o[1]));
-    names_[in.out] = {taken(o[0].names.label, o[1].names.label, second.data(), n, labelRow(in.out)),
-                      taken(o[0].names.origin, o[1].names.origin, second.data(), n, originRow(in.out))};
+    const Names &first = o[0].names.pinched, &other = o[1].names.pinched;
+    if (least && !first.none())
+        for (size_t i = 0; i < n; ++i)
+            if (o[1].at(i) < o[0].at(i) + margin && (first.at(i) & ~other.at(i)) != 0) second[i] = ~0u;
+    Names pinches = taken(first, other, second, n, pinchedRow(in.out));
+    if (!least && field::traits(in.op).selects && o[0].values && o[1].values)
+        pinches = pinched(o[0], o[1], pinches, n, pinchedRow(in.out));
+    names_[in.out] = {taken(o[0].names.label, o[1].names.label, second, n, labelRow(in.out)),
+                      taken(o[0].names.origin, o[1].names.origin, second, n, originRow(in.out)), pinches};
+}
+
+/// What is pinched, and where two operands of a maximum are each other's negative besides.
+Names LabelPass::pinched(const Operand& a, const Operand& b, const Names& known, size_t n, uint32_t* to) const {
+    const float margin = tape_.tieMargin();
+    std::array<uint32_t, maxBlock> found;
+    uint32_t any = 0;
+    for (size_t i = 0; i < n; ++i) any |= found[i] = std::abs(a.values[i] + b.values[i]) < margin ? ~0u : 0u;
+    if (any == 0) return known;
+    for (size_t i = 0; i < n; ++i) to[i] = found[i] | known.at(i);
+    return settled(to, n);
 }
 
 void LabelPass::choose(const Instruction& in, const StepContext& c, const Choice& choice) {

@@ -2,8 +2,13 @@
 // it takes, or makes one of its own where it folds or has faces.
 // Enters: a tape's instructions and register rows, block by block. Leaves: for each point the label of the piece and
 // its origin. Assumes blocks of at most maxBlock points and operands that are still in their registers. A label is a
-// hash of Instruction::piece and of choices, so that dropping operands that cannot be taken changes none.
+// hash of Instruction::piece and of choices, so that dropping operands that cannot be taken changes none. Where the two
+// operands of a maximum are each other's negative, as below a cut that ends at the foot of what it cuts, no solid is
+// left: the place is pinched, and of two operands of a minimum that tie one that isn't is taken.
 #pragma once
+
+#include <array>
+#include <vector>
 
 #include "modeler/eval/blocks.h"
 #include "modeler/field/ops.h"
@@ -37,6 +42,7 @@ private:
     Operand operand(const Instruction& in, const Source* sources, uint32_t k, const StepContext& c) const;
     bool isUnnamed(const Instruction& in, const Source* sources) const;
     void choose(const Instruction& in, const Source* sources, const StepContext& c, bool least);
+    Names pinched(const Operand& a, const Operand& b, const Names& known, size_t n, uint32_t* to) const;
     Names taken(const Names& first, const Names& second, const uint32_t* takesSecond, size_t n, uint32_t* to);
     void blend(const Instruction& in, const Source* sources, const StepContext& c);
     void nameFaces(const Instruction& in, const Source* sources, const StepContext& c);
@@ -48,13 +54,15 @@ private:
     static Names copied(const Names& names, size_t n, uint32_t* to);
     static Names settled(uint32_t* row, size_t n);
 
-    uint32_t* labelRow(uint32_t reg) { return rows_ + 2 * reg * maxBlock; }
+    uint32_t* labelRow(uint32_t reg) { return rows_ + 3 * reg * maxBlock; }
     uint32_t* originRow(uint32_t reg) { return labelRow(reg) + maxBlock; }
+    uint32_t* pinchedRow(uint32_t reg) { return labelRow(reg) + 2 * maxBlock; }
 
     const Tape& tape_;
     const size_t planes_;
-    uint32_t* rows_;                  // by register
-    std::vector<PieceNames>& names_;  // by register
+    uint32_t* rows_;                              // by register
+    std::vector<PieceNames>& names_;              // by register
+    std::array<uint32_t, maxBlock> takesSecond_;  // of the instruction in work, by point: all bits or none
 };
 
 }  // namespace sgm::eval

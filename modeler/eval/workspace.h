@@ -60,6 +60,7 @@ struct Names {
 /// What LabelPass knows of a register.
 struct PieceNames {
     Names label, origin;
+    Names pinched{};  ///< all bits where the solid has no thickness, see LabelPass
 };
 
 /// Registers of owners and names, beside those of values.
@@ -67,7 +68,7 @@ struct OwnerRegisters {
     AlignedFloats owners;  ///< registers of owners, as bits
     std::vector<Owners> registerOwners;
     std::vector<OwnedOperand> ownedOperands;
-    std::vector<uint32_t> nameRows;  ///< two a register: labels, origins
+    std::vector<uint32_t> nameRows;  ///< three a register: labels, origins, what is pinched
     std::vector<PieceNames> registerNames;
 };
 
@@ -92,6 +93,7 @@ inline void spreadBits(uint64_t bits, size_t n, uint32_t* masks) {
 struct PathRegisters {
     std::vector<Choice> choices;             ///< by instruction
     std::vector<uint64_t> pathReaders;       ///< by register
+    std::vector<uint64_t> pathPinched;       ///< by register: points where it is pinched, see LabelPass
     std::vector<uint32_t> liveInstructions;  ///< descending
 };
 
