@@ -22,6 +22,8 @@ constexpr double planeShare = 0.25, chainShare = 0.5;
 constexpr double roundingShare = 0x1p-20;
 /// After so many rounds with faults the mesh stays as it is.
 constexpr int mostRounds = 24;
+constexpr int mostBendings = 2;   ///< of planar regions that couldn't be merged
+constexpr size_t leastBent = 64;  ///< triangles of such a region that is worth it
 
 /// Which solids and cavities a surface has, to see whether simplification turns one inside out: those about as small as
 /// the tolerance may be turned.
@@ -79,26 +81,15 @@ public:
         chains_ = findChains(regions_);
         rejectTouching(flat_, chains_, separated, std::max(rounding_m_, chainShare * tolerance_m_), planes_, threads_);
         if (cancelled(progress_)) return cancelledError();
-        const DecimationInput input{flat_, regions_, chains_, planes_};
-        curved_.emplace(input, DecimationLimits{tolerance_m_, chainShare * tolerance_m_});
-        planar_.emplace(input, chainShare * tolerance_m_, rounding_m_);
-
         const Insides insides(flat_);
-        FaultFinder finder(flat_.positions, threads_, progress_);
-        for (int round = 0; round < mostRounds; ++round) {
-            if (tolerance_m_ > rounding_m_) curved_->run(threads_, progress_);
-            const bool again = !cancelled(progress_) && planar_->run(*curved_, threads_, progress_);
-            if (cancelled(progress_)) return cancelledError();
-            if (again) continue;
-            collect();
-            auto faults = finder.find(triangles_, planar_->triangulated());
-            if (cancelled(progress_)) return cancelledError();
-            if (faults.empty()) faults = insides.turned(triangles_);
-            if (faults.empty()) return std::optional(composeMesh(mesh_, flat_, regions_, planes_, triangles_));
-            isRefined_ = true;
-            if (!refine(faults)) break;
+        auto best = simplifyOnce(insides);
+        for (int attempt = 0; attempt < mostBendings && best.ok() && *best && bendLeftRegions(); ++attempt) {
+            auto made = simplifyOnce(insides);
+            if (!made.ok()) return made;
+            if (!*made || (*made)->triangleCount() >= (*best)->triangleCount()) break;
+            best = std::move(made);
         }
-        return std::optional<Mesh>();
+        return best;
     }
 
     /// Whether faults made run() give vertices back.
@@ -123,6 +114,44 @@ public:
     }
 
 private:
+    /// The result with the planes as they are, nothing where it has faults.
+    Result<std::optional<Mesh>> simplifyOnce(const Insides& insides) {
+        const DecimationInput input{flat_, regions_, chains_, planes_};
+        curved_.emplace(input, DecimationLimits{tolerance_m_, chainShare * tolerance_m_});
+        planar_.emplace(input, chainShare * tolerance_m_, rounding_m_);
+
+        FaultFinder finder(flat_.positions, threads_, progress_);
+        for (int round = 0; round < mostRounds; ++round) {
+            if (tolerance_m_ > rounding_m_) curved_->run(threads_, progress_);
+            const bool again = !cancelled(progress_) && planar_->run(*curved_, threads_, progress_);
+            if (cancelled(progress_)) return cancelledError();
+            if (again) continue;
+            collect();
+            auto faults = finder.find(triangles_, planar_->triangulated());
+            if (cancelled(progress_)) return cancelledError();
+            if (faults.empty()) faults = insides.turned(triangles_);
+            if (faults.empty()) return std::optional(composeMesh(mesh_, flat_, regions_, planes_, triangles_));
+            isRefined_ = true;
+            if (!refine(faults)) break;
+        }
+        return std::optional<Mesh>();
+    }
+
+    /// Takes the planes from large planar regions that have kept all their triangles, since some place of them crosses
+    /// others: as curved ones they keep those near there. Whether there were any.
+    bool bendLeftRegions() {
+        std::vector<size_t> triangles(regions_.count());
+        for (const uint32_t r : regions_.ofTriangle) ++triangles[r];
+        bool some = false;
+        if (!(tolerance_m_ > rounding_m_)) return some;
+        for (uint32_t r = 0; r < regions_.count(); ++r) {
+            if (!planes_[r].planar() || !planar_->isLeft(r) || triangles[r] < leastBent) continue;
+            planes_[r] = {};
+            some = true;
+        }
+        return some;
+    }
+
     /// The result so far: curved regions, planar ones, and those that stay as they are.
     void collect() {
         triangles_.assign(curved_->triangles.begin(), curved_->triangles.end());
