@@ -193,7 +193,7 @@ std::vector<PlanPlanes> roundPlanesOver(const derive::SolidValue& solid, const S
         std::vector<double> pitches;
         for (const plan::Linear& d : plan::distancesOf(plan.footprint))
             pitches.push_back(std::atan2(2 * half, -d.at(apex)));
-        // Where an edge can't be seen from its middle all slopes are as steep as its depth asks for.
+        // Where the centroid isn't inside an edge's line, all slopes have the pitch that the depth gives.
         if (std::any_of(pitches.begin(), pitches.end(), [](double p) { return p >= pi / 2 - 1e-9; }))
             pitches.assign(pitches.size(), std::atan2(2 * half, depth));
         const double drop = overhang * std::tan(*std::min_element(pitches.begin(), pitches.end()));

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <optional>
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"

@@ -160,7 +160,8 @@ std::optional<Hint> withoutWord(const Cursor& cursor, std::string_view message) 
     return {};
 }
 
-/// Words and forms of other shape grammars: `comp(f) { … }`, `case x > 5: …`, `30%: …` as a body, `size 10 10 10`.
+/// Words and forms of other shape grammars: `comp(f) { … }`, `case x > 5: …`, `30%: …` as a body,
+/// `size 10 10 10`.
 std::optional<Hint> ofOtherGrammars(const Cursor& cursor, std::string_view message) {
     const Token token = cursor.peek(), last = cursor.previous(1);
     const std::string found = quoted(cursor.text(token));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 
 #include "modeler/mesh/meeting_point.h"
@@ -12,8 +11,8 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr float sameDirection = 0.99f;  ///< cosine between the triangles beside an edge that may turn
-constexpr int mostTurns = 6;            ///< of edges at one vertex
+constexpr float sameDirection = 0.99f;  ///< cosine between the triangles beside an edge that may be flipped
+constexpr int mostFlips = 6;            ///< of edges at one vertex
 constexpr int mostExchanges = 6;        ///< of a vertex
 /// Of the way between two vertices that are exchanged: how far each ends up from its middle.
 constexpr float exchangedShare = 0.125f;
@@ -49,7 +48,7 @@ private:
         Vec3f compared = before;             ///< its place when triangles were compared last
     };
     /// Triangles of one piece between which edges were exchanged for other diagonals, as they were before.
-    struct Turn {
+    struct Flips {
         struct Side {
             uint32_t triangle;
             Triangle corners;
@@ -58,9 +57,9 @@ private:
         std::vector<Side> sides;
         bool undone = false;
 
-        /// False for a triangle that another turn has changed.
+        /// False for a triangle that others have changed.
         bool add(const TouchedTriangles::Touched& touched, const FlatMesh& flat) {
-            if (touched.hasTurned) return false;
+            if (touched.hasFlipped) return false;
             const uint32_t t = touched.triangle;
             if (std::none_of(sides.begin(), sides.end(), [&](const Side& side) { return side.triangle == t; }))
                 sides.push_back({t, flat.triangles[t], touched.before});
@@ -150,7 +149,7 @@ private:
                 const Triangle corners = flat_.triangles[t];
                 bool done = false;
                 for (int i = 0; i < 3; ++i) done |= exchange(corners[i], corners[(i + 1) % 3]);
-                done = done || turnEdges(t);
+                done = done || flipEdges(t);
                 for (int i = 0; i < 3 && !done; ++i) done |= centre(corners[i]);
                 if (!done) rest.push_back(t);
             }
@@ -240,31 +239,31 @@ private:
         v = vertex;
     }
 
-    /// Exchanges edges at a vertex of a folded triangle for others across its piece, where no triangle folds over then:
+    /// Flips edges at a vertex of a folded triangle, where no triangle folds over then:
     /// a vertex that went to the other side of a corner has others before it. Once a triangle.
-    bool turnEdges(uint32_t triangle) {
+    bool flipEdges(uint32_t triangle) {
         const Triangle corners = flat_.triangles[triangle];
         for (int i = 0; i < 3; ++i)
             for (int k = 1; k < 3; ++k) {
-                Turn turn;
-                if (turnAround(triangle, corners[i], corners[(i + k) % 3], turn)) {
-                    for (const Turn::Side& side : turn.sides) {
+                Flips flips;
+                if (flipAround(triangle, corners[i], corners[(i + k) % 3], flips)) {
+                    for (const Flips::Side& side : flips.sides) {
                         Touched& touched = *touched_.of(side.triangle);
-                        touched.hasTurned = touched.isNew = true;
+                        touched.hasFlipped = touched.isNew = true;
                         touched.before = 0;
                     }
-                    turns_.push_back(std::move(turn));
+                    flips_.push_back(std::move(flips));
                     return true;
                 }
-                restore(turn);
+                restore(flips);
             }
         return false;
     }
 
     /// Takes edges of `pivot` to the third corner of a triangle away, one after the other, and gives `end` the other
-    /// diagonals, until the triangle faces outward. False where it never does; some may have turned then.
-    bool turnAround(uint32_t triangle, uint32_t pivot, uint32_t end, Turn& turn) {
-        for (int step = 0; step < mostTurns; ++step) {
+    /// diagonals, until the triangle faces outward. False where it never does; some edges may be flipped then.
+    bool flipAround(uint32_t triangle, uint32_t pivot, uint32_t end, Flips& flips) {
+        for (int step = 0; step < mostFlips; ++step) {
             const int at = placeIn(triangle, pivot), to = placeIn(triangle, end), third = 3 - at - to;
             const uint32_t apex = flat_.triangles[triangle][third];
             Touched& t = *touched_.of(triangle);
@@ -274,7 +273,7 @@ private:
             const int own = placeIn(s->triangle, pivot);
             const uint32_t other = flat_.triangles[s->triangle][3 - own - placeIn(s->triangle, apex)];
             if (haveEdge(end, other) || isBack(pivot) || isBack(end) || isBack(apex) || isBack(other)) return false;
-            if (!turn.add(t, flat_) || !turn.add(*s, flat_)) return false;
+            if (!flips.add(t, flat_) || !flips.add(*s, flat_)) return false;
             setCorner(triangle, third, other), setCorner(s->triangle, own, end);
             if (touched_.isFlat(*s)) return false;
             if (!touched_.isFlat(t)) return true;
@@ -287,8 +286,8 @@ private:
         return c.x == vertex ? 0 : c.y == vertex ? 1 : 2;
     }
 
-    void restore(const Turn& turn) {
-        for (const Turn::Side& side : turn.sides) {
+    void restore(const Flips& flips) {
+        for (const Flips::Side& side : flips.sides) {
             for (int i = 0; i < 3; ++i)
                 if (flat_.triangles[side.triangle][i] != side.corners[i]) setCorner(side.triangle, i, side.corners[i]);
             touched_.of(side.triangle)->before = side.before;
@@ -333,23 +332,23 @@ private:
         return crossing;
     }
 
-    /// Moves the vertices of some triangles back, and turns edges between them back. Whether there were any.
+    /// Moves the vertices of some triangles back, and flips edges between them back. Whether there were any.
     bool revert(const std::vector<uint32_t>& triangles) {
         bool some = false;
         for (const uint32_t t : triangles) some |= revertCorners(flat_.triangles[t]);
         for (bool again = some; again;) {
             again = false;
-            for (Turn& turn : turns_) {
-                const auto isHeld = [&](const Turn::Side& side) {
+            for (Flips& flips : flips_) {
+                const auto isHeld = [&](const Flips::Side& side) {
                     return !isBack(side.corners.x) && !isBack(side.corners.y) && !isBack(side.corners.z);
                 };
-                if (turn.undone || std::all_of(turn.sides.begin(), turn.sides.end(), isHeld)) continue;
-                restore(turn);
-                for (const Turn::Side& side : turn.sides) {
+                if (flips.undone || std::all_of(flips.sides.begin(), flips.sides.end(), isHeld)) continue;
+                restore(flips);
+                for (const Flips::Side& side : flips.sides) {
                     revertCorners(side.corners);
                     touched_.of(side.triangle)->isNew = true;
                 }
-                turn.undone = again = true;
+                flips.undone = again = true;
             }
         }
         return some;
@@ -374,7 +373,7 @@ private:
     TouchedTriangles touched_;
     std::vector<std::vector<uint64_t>> keysOf_;       ///< by move, ascending
     std::vector<std::vector<uint32_t>> trianglesOf_;  ///< by move
-    std::vector<Turn> turns_;
+    std::vector<Flips> flips_;
     int round_ = 0;
 };
 

@@ -22,8 +22,8 @@ constexpr double planeShare = 0.25, chainShare = 0.5;
 constexpr double roundingShare = 0x1p-20;
 /// After so many rounds with faults the mesh stays as it is.
 constexpr int mostRounds = 24;
-constexpr int mostBendings = 2;   ///< of planar regions that couldn't be merged
-constexpr size_t leastBent = 64;  ///< triangles of such a region that is worth it
+constexpr int mostRetries = 2;       ///< of planar regions that couldn't be merged
+constexpr size_t leastRetried = 64;  ///< triangles of such a region that is worth it
 
 /// Which solids and cavities a surface has, to see whether simplification turns one inside out: those about as small as
 /// the tolerance may be turned.
@@ -83,7 +83,7 @@ public:
         if (cancelled(progress_)) return cancelledError();
         const Insides insides(flat_);
         auto best = simplifyOnce(insides);
-        for (int attempt = 0; attempt < mostBendings && best.ok() && *best && bendLeftRegions(); ++attempt) {
+        for (int attempt = 0; attempt < mostRetries && best.ok() && *best && treatLeftAsCurved(); ++attempt) {
             auto made = simplifyOnce(insides);
             if (!made.ok()) return made;
             if (!*made || (*made)->triangleCount() >= (*best)->triangleCount()) break;
@@ -139,13 +139,13 @@ private:
 
     /// Takes the planes from large planar regions that have kept all their triangles, since some place of them crosses
     /// others: as curved ones they keep those near there. Whether there were any.
-    bool bendLeftRegions() {
+    bool treatLeftAsCurved() {
         std::vector<size_t> triangles(regions_.count());
         for (const uint32_t r : regions_.ofTriangle) ++triangles[r];
         bool some = false;
         if (!(tolerance_m_ > rounding_m_)) return some;
         for (uint32_t r = 0; r < regions_.count(); ++r) {
-            if (!planes_[r].planar() || !planar_->isLeft(r) || triangles[r] < leastBent) continue;
+            if (!planes_[r].planar() || !planar_->isLeft(r) || triangles[r] < leastRetried) continue;
             planes_[r] = {};
             some = true;
         }

@@ -15,11 +15,11 @@ public:
     static constexpr uint32_t none = 0xffffffffu;  ///< stands for a vertex that stays
     struct Touched {
         uint32_t triangle;
-        int creases;             ///< a bit for each corner that lies on a crease
-        Vec3d outward;           ///< the sum of its corners' normals, of those at creases, as a unit vector
-        double before;           ///< twice its area, as far as it faced outward
-        bool isNew = false;      ///< an edge of it was turned since triangles were compared
-        bool hasTurned = false;  ///< an edge of it was turned once
+        int creases;              ///< a bit for each corner that lies on a crease
+        Vec3d outward;            ///< the sum of its corners' normals, of those at creases, as a unit vector
+        double before;            ///< twice its area, as far as it faced outward
+        bool isNew = false;       ///< an edge of it was flipped since triangles were compared
+        bool hasFlipped = false;  ///< an edge of it was flipped once
     };
 
     TouchedTriangles(const Mesh& mesh, const FlatMesh& flat) : mesh_(mesh), flat_(flat) {}

@@ -137,6 +137,20 @@ TEST(Refine, DoesNothingBeyondItsBoundOfTriangles) {
     EXPECT_EQ(bytesOf(*coarse.mesh), before);
 }
 
+TEST(Refine, HalvesTheFirstCellsThatItsBoundAllows) {
+    const CellSet wanted = cellsIn(meshOf(finned(0), 20, 2, crisp).grid, fin);
+    BuiltMesh coarse = meshOf(finned(0), 20, 2, crisp);
+    const size_t bound = coarse.mesh->triangleCount() + 100;
+    const auto cells = refineCells(*coarse.mesh, finned(0).tape(), coarse.grid, wanted, {3, bound}, nullptr);
+    ASSERT_TRUE(cells.ok());
+    const auto all =
+        std::count_if(wanted.list().begin(), wanted.list().end(), [&](Vec3i cell) { return cells->contains(cell); });
+    EXPECT_GT(all, 0);
+    EXPECT_LT(static_cast<size_t>(all), wanted.size());
+    const auto judged = validate(*coarse.mesh);
+    EXPECT_TRUE(judged.ok() && judged->closed && !judged->selfIntersects);
+}
+
 TEST(Refine, IsCancelled) {
     BuiltMesh coarse = meshOf(finned(0), 20, 2, crisp);
     const std::vector<unsigned char> before = bytesOf(*coarse.mesh);

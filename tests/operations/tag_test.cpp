@@ -1,4 +1,4 @@
-// tag: edges of a plan named by the grammar, and what asks for their words.
+// tag: edges of a plan named by the grammar, and the operations that select edges by name.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -24,6 +26,13 @@ struct CrispModel {
         return edited(std::move(mesh), edits, {model.tape, mesh::Surface::Crisp, grid.cell_m}, context);
     }
 };
+
+/// A file as text.
+inline std::string fileText(const std::string& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+}
 
 /// A text with errors fails the test, and the program ends.
 inline Model modelOf(const std::string& text, Context& context) {

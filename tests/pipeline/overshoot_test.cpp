@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -54,10 +52,9 @@ TEST(Overshoot, SimplificationKeepsTheTopsOfRoadsLevel) {
 /// Below a ledge less deep than a cell the way over the breaks goes to and fro: it was cut short where the underside
 /// lies near the side of a cell, as at 170 vertices of the apartment's bars. 40 are left where more parts meet.
 TEST(Overshoot, LedgesLessDeepThanACellHaveTheirUndersides) {
-    std::ostringstream text;
-    text << std::ifstream("examples/buildings/apartment.sgm").rdbuf();
+    const std::string text = fileText("examples/buildings/apartment.sgm");
     Context context{nullptr, 2};
-    const CrispModel crisp = crispModel(text.str(), 200, context);
+    const CrispModel crisp = crispModel(text, 200, context);
     const std::vector<float> cells = outside(crisp, crisp.mesh);
     EXPECT_LT(std::count_if(cells.begin(), cells.end(), [](float c) { return c > .1f; }), 60);
 }

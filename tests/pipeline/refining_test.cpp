@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <regex>
-#include <sstream>
 
 #include "grammar/pipeline/incremental.h"
 #include "grammar/pipeline/missing.h"
@@ -19,11 +17,7 @@
 namespace sgm::pipeline {
 namespace {
 
-std::string sceneText(const std::string& name) {
-    std::ostringstream text;
-    text << std::ifstream("tests/mesh/scenes/" + name + ".sgm").rdbuf();
-    return text.str();
-}
+std::string sceneText(const std::string& name) { return fileText("tests/mesh/scenes/" + name + ".sgm"); }
 
 MeshedModel meshed(const Model& model, int resolution, int halvings) {
     Context context{nullptr, 2};
@@ -55,10 +49,9 @@ TEST(Refining, ThinPartsOfTheTestScenesAreThere) {
 /// Two of 4,164 halved cells didn't fit those beside them: all cells that they were connected with stayed as they were,
 /// and five bars of windows were missing. The cells beside them are halved too.
 TEST(Refining, CellsThatDontFitTakeTheirNeighboursWithThem) {
-    std::ostringstream text;
-    text << std::ifstream("examples/buildings/warehouse.sgm").rdbuf();
+    const std::string text = fileText("examples/buildings/warehouse.sgm");
     Context context{nullptr, 2};
-    const Model model = modelOf(std::regex_replace(text.str(), std::regex(" texture [^\n]*"), ""), context);
+    const Model model = modelOf(std::regex_replace(text, std::regex(" texture [^\n]*"), ""), context);
     EXPECT_TRUE(meshed(model, 64, 3).missing->empty());
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "grammar/lower/mesh_positions.h"
 #include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/load.h"
 #include "grammar/pipeline/meshing.h"
@@ -38,12 +39,6 @@ size_t verticesOff(const char* text, int resolution, double (*distance)(Vec3d)) 
 
 /// The last part of a model.
 OriginId floorOf(const Model& model) { return static_cast<OriginId>(model.lowered->provenance.parts.size() - 1); }
-
-Vec3f positionOf(const mesh::Mesh& mesh, uint32_t vertex) {
-    for (const mesh::Chunk& chunk : mesh.chunks)
-        if (vertex - chunk.firstVertex < chunk.positions.size()) return chunk.positions[vertex - chunk.firstVertex];
-    return {};
-}
 
 /// Of a box turned by 15 degrees about y, in whose frame it lies from `low` to `high`.
 double fromBox(Vec3d p, Vec3d low, Vec3d high) {
@@ -80,12 +75,13 @@ TEST(Seams, OfCutsThatEndAtTheFootHaveTheLookOfTheFloor) {
         "grammar 2\nstart S -> (cube size (10, 4, .4) - cube size (4, 3, 2) move (0, -.5m, 0)) + cube size (14, .4, 8) "
         "move (0, -2.2m, 0)\n",
         128, context);
+    const std::vector<const Vec3f*> positions = lower::positionsOf(crisp.mesh);
     double floor_m2 = 0;
     for (const mesh::Chunk& chunk : crisp.mesh.chunks)
         for (size_t t = 0; t < chunk.triangles.size(); ++t) {
             const mesh::Triangle corners = chunk.inMesh(chunk.triangles[t]);
             std::array<Vec3d, 3> p;
-            for (int k = 0; k < 3; ++k) p[static_cast<size_t>(k)] = positionOf(crisp.mesh, corners[k]).as<double>();
+            for (int k = 0; k < 3; ++k) p[static_cast<size_t>(k)] = positions[corners[k]]->as<double>();
             const Vec3d twice = cross(p[1] - p[0], p[2] - p[0]);
             if (std::abs(p[0].y + 2) > 1e-3 || !(twice.y > .99 * length(twice))) continue;
             floor_m2 += chunk.origins[t] == floorOf(crisp.model) ? twice.y / 2 : 0;

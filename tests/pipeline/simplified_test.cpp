@@ -1,7 +1,5 @@
 // Simplified meshes of rough ground, judged by CGAL.
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/mesh_edits.h"
@@ -77,10 +75,9 @@ TEST(Simplified, WedgesBehindChimneysEndInTheirCorners) {
 
 /// The top of the palace's plinth touches itself in one place: all of it kept its 15,000 triangles.
 TEST(Simplified, PlanesThatCrossSomewhereKeepTrianglesThereAlone) {
-    std::ostringstream text;
-    text << std::ifstream("examples/buildings/palace.sgm").rdbuf();
+    const std::string text = fileText("examples/buildings/palace.sgm");
     Context context{nullptr, 2};
-    CrispModel crisp = crispModel(text.str(), 128, context);
+    CrispModel crisp = crispModel(text, 128, context);
     const auto mesh = crisp.edit({}, context);
     ASSERT_TRUE(mesh.ok());
     EXPECT_LT(mesh->triangleCount(), 40000u);
