@@ -38,7 +38,9 @@ struct FacePoints {
 };
 constexpr FacePoints roughly{16, 64}, closely{256, 1024};
 constexpr double leastRoughly = 0.7;        ///< share of a face that has to be free to be looked at closely
-constexpr float tornShare = 0.125f;         ///< of a round part's thickness: its mesh is so near, or twice as much
+constexpr float reachCells = 0.4375f;       ///< a part's mesh is so near to where the field has its surface
+constexpr float tornShare = 0.22f;          ///< of a round part's thickness: its mesh is so near
+constexpr float leastReachCells = 0.055f;   ///< however thin it is
 constexpr double probed = 1.1 * lineReach;  ///< of a scope: where its part is looked for
 
 /// A thin part, and the share of its surface that the mesh lacks; 0 where it is buried.
@@ -279,15 +281,15 @@ Presence presenceOf(const mesh::Mesh& mesh, std::span<const Candidate> thin, std
                     size_t partCount, float cell_m) {
     using Extent = Presence::Query::Extent;
     std::vector<Presence::Query> queries(partCount);
-    const float quarter_m = cell_m / 4;
+    const float reach_m = reachCells * cell_m;
     std::vector<Vec3f> points;
     for (const ThinSection& section : sections)
         for (const ThinSection::Line& line : section.lines)
             for (const ThinSection::Crossing& end : line.ends) {
-                queries[end.owner] = {Extent::NearPoints, quarter_m};
+                queries[end.owner] = {Extent::NearPoints, reach_m};
                 points.push_back(end.at);
             }
-    for (const Candidate& c : thin) queries[c.part] = {Extent::All, quarter_m};
+    for (const Candidate& c : thin) queries[c.part] = {Extent::All, reach_m};
     return Presence(mesh, queries, points, cell_m);
 }
 
@@ -318,9 +320,9 @@ Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation
     if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     std::vector<Presence::Query> queries(model.shapeOf.size());
     for (const Candidate& c : thin)
-        queries[c.part] = {
-            Presence::Query::Extent::All,
-            std::clamp(tornShare * static_cast<float>(minComponent(c.scope.size)), cell_m / 32, cell_m / 4)};
+        queries[c.part] = {Presence::Query::Extent::All,
+                           std::clamp(tornShare * static_cast<float>(minComponent(c.scope.size)),
+                                      leastReachCells * cell_m, reachCells * cell_m)};
     const Presence presence(mesh, queries, {}, cell_m);
     probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();

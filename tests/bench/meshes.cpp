@@ -196,7 +196,7 @@ nlohmann::ordered_json jsonOf(const MeshRow& row) {
 std::string meshesHeader() {
     return "| model | cells | triangles | of exact | crease, cells: mean | p99 | stray | p99 | corner | borders | "
            "volume "
-           "| open, non-manifold edges | crossing pairs | seconds | crisp, simplified of cubes | .glb MB |\n"
+           "| open, non-manifold edges | crossing pairs | seconds | crisp, whole of cubes | .glb MB |\n"
            "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 }
 
