@@ -39,7 +39,8 @@ struct FacePoints {
 constexpr FacePoints roughly{16, 64}, closely{256, 1024};
 constexpr double leastRoughly = 0.7;        ///< share of a face that has to be free to be looked at closely
 constexpr float reachCells = 0.4375f;       ///< a part's mesh is so near to where the field has its surface
-constexpr float tornShare = 0.22f;          ///< of a round part's thickness: its mesh is so near
+constexpr float tornShare = 0.08f;          ///< of a round part's thickness: its mesh is so near
+constexpr double roundCells = 2;            ///< the thickness from which cells follow a round part
 constexpr float leastReachCells = 0.055f;   ///< however thin it is
 constexpr double probed = 1.1 * lineReach;  ///< of a scope: where its part is looked for
 
@@ -234,9 +235,9 @@ private:
     std::vector<Vec3f> inside_, outside_;
 };
 
-/// The parts that may lack something, where they stand on hills.
-std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Model& model, double cell,
-                                 const std::vector<ThinPart>* among) {
+/// The parts that cells as large as `thickness_m` may not hold, where they stand on hills.
+std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Model& model, double thickness_m,
+                                 double cell, const std::vector<ThinPart>* among) {
     std::vector<bool> isWanted(model.shapeOf.size(), !among);
     if (among)
         for (const ThinPart& part : *among)
@@ -246,7 +247,7 @@ std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Mod
         if (model.shapeOf[part] == derive::none || !isWanted[part]) continue;
         const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
         if (shape.solid == derive::none) continue;
-        if (!(cellThatHolds(shape.scope) < cell)) continue;
+        if (!(cellThatHolds(shape.scope) < thickness_m)) continue;
         thin.push_back({.part = part, .scope = derive::liftedScope(derivation, model.shapeOf[part])});
         thin.back().plateAxis = plateAxis(thin.back().scope, cell);
         thin.back().isBox = isBox(derivation.tree.solids[shape.solid], shape.scope);
@@ -312,10 +313,12 @@ std::vector<ThinPart> lackedOf(std::span<const Candidate> thin) {
 Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation, const Model& model,
                                             const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m, int threads,
                                             Progress* progress, const std::vector<ThinPart>* among) {
-    std::vector<Candidate> thin = thinParts(derivation, model, static_cast<double>(cell_m), among);
+    const auto cell = static_cast<double>(cell_m);
+    std::vector<Candidate> thin = thinParts(derivation, model, roundCells * cell, cell, among);
     std::erase_if(thin, [&](const Candidate& c) {
+        if (c.isBox) return c.plateAxis >= 0 || !(cellThatHolds(c.scope) < cell);
         const derive::SolidValue& solid = derivation.tree.solids[derivation.tree.shapes[model.shapeOf[c.part]].solid];
-        return c.isBox ? c.plateAxis >= 0 : !solid.primitive || solid.primitive->plan != field::PlanUse::None;
+        return !solid.primitive || solid.primitive->plan != field::PlanUse::None;
     });
     if (thin.empty() || mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     std::vector<Presence::Query> queries(model.shapeOf.size());
@@ -334,7 +337,7 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
                                                int threads, Progress* progress, const std::vector<ThinPart>* among) {
     if (mesh.hasPositionsOnly()) return std::vector<ThinPart>{};
     const auto cell = static_cast<double>(cell_m);
-    std::vector<Candidate> thin = thinParts(derivation, model, cell, among);
+    std::vector<Candidate> thin = thinParts(derivation, model, cell, cell, among);
     const auto sections = findThinSections(derivation, model, tape, cell_m, threads, progress, among);
     if (!sections.ok()) return sections.error();
     auto walls = findMissingWalls(derivation, model, tape, mesh, cell_m, threads, progress, among);

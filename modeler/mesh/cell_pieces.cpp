@@ -14,7 +14,10 @@ constexpr float leavingReach = 2;        ///< of a cell, that a corner may lie o
 constexpr float confirmShare = 0x1p-8f;  ///< of a cell times the slope: the field at a confirmed corner
 constexpr float apartShare = 0.03f;      ///< of a cell, from a corner to each of its planes
 constexpr int surfaceSteps = 3;          ///< of Newton's method
-constexpr double towardsMiddle = 1e-6;   ///< weight of the nodes' middle where planes leave a corner open
+constexpr float flatCosine = 0.99999f;   ///< between the normals of pieces in one plane
+constexpr int flatParts = 7;             ///< of either side of the grid on which three of them are looked for
+constexpr int flatRounds = 4;
+constexpr double towardsMiddle = 1e-6;  ///< weight of the nodes' middle where planes leave a corner open
 
 /// x of A x = b by Cramer's rule, for a symmetric positive definite A.
 Vec3d solved(const std::array<Vec3d, 3>& rows, Vec3d b) {
@@ -23,12 +26,24 @@ Vec3d solved(const std::array<Vec3d, 3>& rows, Vec3d b) {
     return (cross(rows[1], rows[2]) * b.x + cross(rows[2], rows[0]) * b.y + cross(rows[0], rows[1]) * b.z) / det;
 }
 
+bool lieInOnePlane(std::span<const PiecePoint> pieces) {
+    const Vec3f first = normalized(pieces[0].gradient);
+    return std::all_of(pieces.begin(), pieces.end(),
+                       [&](const PiecePoint& piece) { return dot(first, normalized(piece.gradient)) > flatCosine; });
+}
+
 double squares(const LoopNode& a, const LoopNode& b) {
     const Vec3d d = (b.at - a.at).as<double>();
     return dot(d, d);
 }
 
 }  // namespace
+
+Vec3f inCell(const Grid& grid, Vec3i cell, Vec3f p) {
+    const Vec3f low = grid.corner(cell.x, cell.y, cell.z), high = grid.corner(cell.x + 1, cell.y + 1, cell.z + 1);
+    const Vec3f margin = (high - low) * 0x1.0p-8f;
+    return max(low + margin, min(high - margin, p));
+}
 
 void CellPieces::clear() { nodes_.clear(), polygons_.clear(), loops_.clear(), corners_.clear(), cellEnds_.clear(); }
 
@@ -119,13 +134,6 @@ void CellPieces::addCorner(Loop& loop, const std::vector<LoopNode>& nodes) {
     corner.at = sum * (1.0f / static_cast<float>(corner.planes.size()));
 }
 
-/// The nearest point inside a cell.
-Vec3f CellPieces::inCell(Vec3i cell, Vec3f p) const {
-    const Vec3f low = grid_->corner(cell.x, cell.y, cell.z), high = grid_->corner(cell.x + 1, cell.y + 1, cell.z + 1);
-    const Vec3f margin = (high - low) * 0x1.0p-8f;
-    return max(low + margin, min(high - margin, p));
-}
-
 /// Moves a corner to where its planes meet, by least squares.
 void CellPieces::intersect(Corner& corner) const {
     const Vec3d middle = corner.at.as<double>();
@@ -138,7 +146,7 @@ void CellPieces::intersect(Corner& corner) const {
         right += n * d;
     }
     corner.meeting = (middle + solved(rows, right)).as<float>();
-    corner.at = inCell(corner.cell, corner.meeting);
+    corner.at = inCell(*grid_, corner.cell, corner.meeting);
 }
 
 /// Whether all planes of a corner pass near its meeting: in a cell with more of them than one corner has they needn't.
@@ -162,11 +170,86 @@ uint64_t CellPieces::moveToSurface(const BlockTapes& tapes, eval::Workspace& wor
             float value;
             const Vec3f g = probes_.point(i, value).gradient;
             if (const float square = dot(g, g); square > 0 && std::abs(value) < std::sqrt(square) * grid_->cell_m)
-                apart[i]->at = inCell(apart[i]->cell, apart[i]->at - g * (value / square));
+                apart[i]->at = inCell(*grid_, apart[i]->cell, apart[i]->at - g * (value / square));
             apart[i]->meeting = apart[i]->at;
         }
     }
     return apart.size() * surfaceSteps;
+}
+
+/// Corners of three pieces in one plane go to where their borders meet: the planes don't tell. That is looked for on a
+/// grid, in the square with all three again on a finer one. Returns how often the field was evaluated.
+uint64_t CellPieces::searchFlatCorners(const BlockTapes& tapes, eval::Workspace& workspace) {
+    std::vector<FlatCorner> flat;
+    for (Corner& corner : corners_)
+        if (corner.labels.size() == 3 && corner.meeting == corner.at && lieInOnePlane(corner.planes))
+            flat.push_back(squareAround(corner));
+    uint64_t evaluations = 0;
+    for (int round = 0; round < flatRounds && !flat.empty(); ++round) {
+        probes_.clear();
+        for (const FlatCorner& at : flat)
+            for (int v = 0; v <= flatParts; ++v)
+                for (int u = 0; u <= flatParts; ++u)
+                    probes_.add(tapes, at.corner->brick, at.place(float(u) / flatParts, float(v) / flatParts));
+        probes_.evaluate(workspace);
+        evaluations += probes_.size();
+        const size_t each = probes_.size() / flat.size();
+        size_t kept = 0;
+        for (size_t i = 0; i < flat.size(); ++i) {
+            if (!narrow(flat[i], i * each)) continue;  // within the margin of ties walls show instead
+            flat[i].corner->at = flat[i].corner->meeting =
+                inCell(*grid_, flat[i].corner->cell, flat[i].place(0.5, 0.5));
+            flat[kept++] = flat[i];
+        }
+        flat.resize(kept);
+    }
+    return evaluations;
+}
+
+/// Around all nodes of a corner's loop, in its plane.
+CellPieces::FlatCorner CellPieces::squareAround(Corner& corner) const {
+    const Vec3f normal = corner.planes[0].gradient;
+    int axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (std::abs(normal[i]) > std::abs(normal[axis])) axis = i;
+    Box3f box;
+    const Loop& loop = loops_[corner.loop];
+    for (uint32_t i = loop.firstNode; i < loop.endNode; ++i) box = hull(box, {nodes_[i].at, nodes_[i].at});
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto along = [&](int a) {
+        Vec3f way{};
+        way[a] = box.hi[a] - box.lo[a];
+        way[axis] = -way[a] * normal[a] / normal[axis];
+        return way;
+    };
+    Vec3f low = corner.at;
+    low[axis] += ((low[u] - box.lo[u]) * normal[u] + (low[v] - box.lo[v]) * normal[v]) / normal[axis];
+    low[u] = box.lo[u], low[v] = box.lo[v];
+    return {&corner, low, along(u), along(v)};
+}
+
+/// Puts a square of the grid with all three pieces in the place of all of it; false where none has. The grid's points
+/// are samples from `sample` on.
+bool CellPieces::narrow(FlatCorner& flat, size_t sample) const {
+    constexpr size_t row = flatParts + 1;
+    const auto& labels = flat.corner->labels;
+    std::array<unsigned, row * row> seen;  // a bit for each piece
+    for (size_t i = 0; i < seen.size(); ++i) {
+        float value;
+        const PiecePoint point = probes_.point(sample + i, value);
+        seen[i] = 0;
+        for (size_t k = 0; k < labels.size(); ++k) seen[i] |= unsigned{point.label == labels[k]} << k;
+    }
+    for (size_t v = 0; v < flatParts; ++v)
+        for (size_t u = 0; u < flatParts; ++u) {
+            const size_t at = v * row + u;
+            if ((seen[at] | seen[at + 1] | seen[at + row] | seen[at + row + 1]) != 7) continue;
+            const float margin = 0.1f, share = (1 + 2 * margin) / flatParts;
+            flat.low = flat.place((float(u) - margin) / flatParts, (float(v) - margin) / flatParts);
+            flat.alongU = flat.alongU * share, flat.alongV = flat.alongV * share;
+            return true;
+        }
+    return false;
 }
 
 /// A meeting outside the cell counts where it lies on the surface, on one of the corner's pieces. Returns at how many
@@ -235,21 +318,27 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
         }
     }
     evaluations += moveToSurface(tapes, workspace);
+    evaluations += searchFlatCorners(tapes, workspace);
     evaluations += confirmMeetings(tapes, workspace);
+    writeCorners();
+    return evaluations;
+}
+
+/// Puts the corners into their polygons.
+void CellPieces::writeCorners() {
     for (const Loop& loop : loops_) {
         if (loop.corner < 0) continue;
         const Corner& corner = corners_[static_cast<size_t>(loop.corner)];
         for (uint32_t p = loop.firstPolygon; p < loop.endPolygon; ++p)
             for (uint32_t i = polygons_[p].first; i < polygons_[p].end; ++i)
                 if (nodes_[i].vertex == cornerVertex) {
-                    nodes_[i].vertex = firstVertex + static_cast<uint32_t>(loop.corner);
+                    nodes_[i].vertex = firstVertex_ + static_cast<uint32_t>(loop.corner);
                     nodes_[i].at = corner.at;
                     nodes_[i].isBreak = true;
                     for (const PiecePoint& plane : corner.planes)
                         if (plane.label == polygons_[p].label) nodes_[i].sides = {&plane, &plane};
                 }
     }
-    return evaluations;
 }
 
 }  // namespace sgm::mesh

@@ -47,6 +47,9 @@ struct PieceTriangles {
     }
 };
 
+/// The point inside a cell, a little off its sides, that is nearest to `p`, metres.
+Vec3f inCell(const Grid& grid, Vec3i cell, Vec3f p);
+
 /// One worker's splitter, reused from block to block.
 class CellPieces {
 public:
@@ -88,14 +91,24 @@ private:
         std::vector<Vec3f> means;  ///< by label: the middle of its nodes
     };
 
+    /// A parallelogram in a plane in which a corner between borders is looked for.
+    struct FlatCorner {
+        Corner* corner;
+        Vec3f low, alongU, alongV;
+        Vec3f place(float u, float v) const { return low + alongU * u + alongV * v; }
+    };
+
     void addPolygon(std::span<const LoopNode> nodes);
     void addSplit(Loop& loop, std::vector<LoopNode>& nodes);
     void addCorner(Loop& loop, const std::vector<LoopNode>& nodes);
     uint64_t confirmMeetings(const BlockTapes& tapes, eval::Workspace& workspace);
     uint64_t moveToSurface(const BlockTapes& tapes, eval::Workspace& workspace);
     bool meets(const Corner& corner) const;
-    Vec3f inCell(Vec3i cell, Vec3f p) const;
+    uint64_t searchFlatCorners(const BlockTapes& tapes, eval::Workspace& workspace);
+    FlatCorner squareAround(Corner& corner) const;
+    bool narrow(FlatCorner& flat, size_t sample) const;
     void intersect(Corner& corner) const;
+    void writeCorners();
     bool liesInFace(Vec3f a, Vec3f b) const;
     size_t bestEar(Vec3d normal) const;
     bool triangulatePolygon(const Polygon& polygon, PieceTriangles& out);

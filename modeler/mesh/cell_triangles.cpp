@@ -158,7 +158,7 @@ void CellPieces::fan(uint32_t l, Vec3f place, PieceTriangles& out) {
     LoopNode middle{};
     middle.sides = {&noPiece, &noPiece};
     middle.isBreak = true;
-    middle.at = inCell(loop.cell, place);
+    middle.at = inCell(*grid_, loop.cell, place);
     if (loop.corner < 0) {
         loop.corner = static_cast<int32_t>(corners_.size());
         corners_.emplace_back();

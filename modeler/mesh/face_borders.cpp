@@ -37,7 +37,7 @@ size_t FaceCreases::samplesOf(State state) {
 void FaceCreases::searchBorder(Gap& gap, bool isFlat) {
     gap.state = State::Border;
     gap.rounds = 0;
-    gap.looks = isFlat ? mostLooks : 0;
+    gap.looks.below = isFlat ? mostLooks : 0;
     gap.nearA.point = gap.a, gap.nearB.point = gap.b;
     gap.nearA.value = gap.nearB.value = 0;
 }
@@ -68,7 +68,7 @@ bool FaceCreases::takeBelow(const FaceSegment& segment, Gap& gap, size_t sample)
     float value;
     gap.wall.point = samples_.point(sample, value);
     gap.state = State::Beside;
-    gap.looked = 0;
+    gap.looks.beside = 0;
     // The point nearest to it in the plane of the face.
     const int across = segment.axis;
     gap.wall.value = value + gap.wall.point.gradient[across] * (gap.nearA.point.at[across] - gap.wall.point.at[across]);
@@ -91,7 +91,7 @@ bool FaceCreases::takeBeside(const FaceSegment& segment, Gap& gap, size_t sample
         return false;
     const double near = besideShare * grid_->cell_m;
     const auto liesOn = [&](const LinearField& f) { return std::abs(f.value) <= near * length(f.point.gradient); };
-    if (!liesOn(a) || !liesOn(b)) return ++gap.looked < besideRounds && meetWall(segment, gap, a);
+    if (!liesOn(a) || !liesOn(b)) return ++gap.looks.beside < besideRounds && meetWall(segment, gap, a);
     gap.nearA = a, gap.nearB = b;
     gap.crossing = gap.at;
     gap.state = State::Done;
@@ -136,7 +136,7 @@ void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sampl
         break;
     }
     if (++gap.rounds < borderRounds) {
-        if (gap.looks > 0) --gap.looks, gap.state = State::Below;
+        if (gap.looks.below > 0) --gap.looks.below, gap.state = State::Below;
         return;
     }
     const Vec3f found = between(gap.nearA.point.at, gap.nearB.point.at, 0.5);

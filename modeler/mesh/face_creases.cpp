@@ -10,8 +10,11 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr int probeRounds = 5;  ///< times that both sides of a crease are looked at
-constexpr float probeShare = 0.0625f;
+constexpr int probeRounds = 8;  ///< times that both sides of a crease are looked at
+/// Of the way from a crossing to either end: where its piece is looked at, and farther where the other one is found,
+/// for the tangents of round pieces cross beyond their crease.
+constexpr float probeShare = 0.0625f, farthestProbe = 0.8f;
+float fartherThan(float share) { return std::min(4 * share, 0.5f + 0.5f * share); }
 constexpr float settledShare = 1e-4f;       ///< of a cell, within which a crease point may still move
 constexpr float endMargin = 0x1.0p-12f;     ///< of a segment, kept free of breaks at its ends
 constexpr double monotoneShare = 0x1.0p-6;  ///< of a segment, between breaks
@@ -69,6 +72,7 @@ uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Wor
         Gap gap;
         gap.segment = s;
         gap.a = segments[s].ends[0], gap.b = segments[s].ends[1];
+        gap.shares = {probeShare, probeShare};
         gap.nearA.value = segments[s].values[0], gap.nearB.value = segments[s].values[1];
         takeEnds(segments[s], gap, gap.a, gap.b);
         gaps_.push_back(gap);
@@ -159,7 +163,7 @@ void FaceCreases::ask(const FaceSegment& segment, const Gap& gap) {
             add(gap.wall.point.at);
             break;
         case State::Crease:
-            add(between(gap.at, gap.a.at, probeShare)), add(between(gap.at, gap.b.at, probeShare));
+            add(between(gap.at, gap.a.at, gap.shares[0])), add(between(gap.at, gap.b.at, gap.shares[1]));
             break;
         default:
             askForBorder(segment, gap);
@@ -289,10 +293,16 @@ bool FaceCreases::moveAlongLine(const FaceSegment& segment, PiecePoint& piece) c
 void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t sample) {
     Gap& gap = gaps_[g];
     ++gap.rounds;
-    bool known = true;
-    for (int side = 0; side < 2; ++side) {
+    bool known = true, looksFarther = false;
+    for (size_t side = 0; side < 2; ++side) {
         float value;
-        const PiecePoint probe = samples_.point(sample + static_cast<size_t>(side), value);
+        const PiecePoint probe = samples_.point(sample + side, value);
+        const bool isFar = gap.shares[side] > probeShare;
+        const bool isOther = probe.label == (side == 0 ? gap.b : gap.a).label;
+        const bool goesOn = isOther && gap.shares[side] < farthestProbe;
+        gap.shares[side] = goesOn ? fartherThan(gap.shares[side]) : probeShare;
+        looksFarther |= goesOn;
+        if (isFar && (isOther || !isKnown(value) || probe.label != (side == 0 ? gap.a : gap.b).label)) continue;
         if (!isKnown(value)) {
             known = false;
         } else if (probe.label == gap.a.label) {
@@ -309,7 +319,7 @@ void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t samp
         }
     }
     if (!known || gap.rounds >= probeRounds) return searchBorder(gap);
-    aim(segment, gap);
+    if (!looksFarther) aim(segment, gap);
 }
 
 /// A third piece lies between the two.
@@ -325,6 +335,7 @@ void FaceCreases::split(uint32_t g, const PiecePoint& third) {
     gap.state = State::Ends;
     gap.leaves = false;
     gap.rounds = 0;
+    gap.shares = after.shares = {probeShare, probeShare};
     gaps_.push_back(after);
     next_.push_back(added);
 }

@@ -48,9 +48,12 @@ private:
         int32_t next = -1;  ///< the gap after it on the segment
         State state = State::Ends;
         uint8_t rounds = 0, splits = 0;
-        uint8_t looks = 0, looked = 0;  ///< below a border that are left, and beside it that were taken
-        PiecePoint a, b;                ///< where the pieces are known
-        LinearField nearA, nearB;       ///< their fields where they were looked at last, nearer to the crease
+        struct {
+            uint8_t below = 0, beside = 0;  ///< left, and taken
+        } looks;                            ///< at a border's wall
+        std::array<float, 2> shares{};      ///< of the way to a and to b, where these are looked for
+        PiecePoint a, b;                    ///< where the pieces are known
+        LinearField nearA, nearB;           ///< their fields where they were looked at last, nearer to the crease
         LinearField wall;  ///< between two parts, looked at below the surface; a third piece, looked at amid the gap
         Vec3f at;
         Vec3f crossing;       ///< of the two lines, before it was moved into the face

@@ -230,6 +230,27 @@ TEST(Crisp, BordersInAPlaneLieOnTheWallBetweenTwoParts) {
     }
 }
 
+TEST(Crisp, BordersOfThreePartsInOnePlaneMeetInACorner) {
+    for (int place = 0; place < 8; ++place) {
+        Scene s;
+        const Vec3f moved = Vec3f{0.013f, 0.029f, 0.041f} * static_cast<float>(place);
+        const field::Owned parts[] = {{block(s.graph, moved + Vec3f{0, -1, 0}, {2, 1, 1}), 1},
+                                      {block(s.graph, moved + Vec3f{-0.5f, 1, 0}, {0.5f, 1, 1}), 2},
+                                      {block(s.graph, moved + Vec3f{0.5f, 1, 0}, {0.5f, 1, 1}), 3}};
+        s.field = field::sum(s.graph, parts);
+        const int resolution = 24;
+        const Mesh mesh = crispMesh(s, resolution);
+        for (const float side : {-1.0f, 1.0f}) {
+            double nearest = 1;
+            for (const Chunk& c : mesh.chunks)
+                for (const Vec3f& p : c.positions)
+                    nearest = std::min(nearest, double{length(p - moved - Vec3f{0, 0, side})});
+            EXPECT_LT(nearest, 0.002 * 4 / resolution) << place << ' ' << side;
+        }
+        EXPECT_NEAR(borderLength(mesh), 14, 1e-3) << place;  // 8 at the foot, 6 between the upper ones
+    }
+}
+
 TEST(Crisp, ACylinderHasRoundRims) {
     Scene s;
     const field::Point p = turned(s.graph, {}, 17);
@@ -237,6 +258,34 @@ TEST(Crisp, ACylinderHasRoundRims) {
     s.field = {
         s.graph.apply(field::codeOf<field::ops::Rim>, {side, cap}), {{-1.5f, -1.5f, -1.5f}, {1.5f, 1.5f, 1.5f}}, 1, 1};
     for (const int resolution : {24, 64}) crispMesh(s, resolution);
+}
+
+TEST(Crisp, ARodHalfSunkInAWallMeetsItAlongStraightLines) {
+    const float radius = 0.2f, sunk = 0.06f;
+    const double a = 27 * 3.14159265358979 / 180;
+    for (int place = 0; place < 8; ++place) {
+        Scene s;
+        const auto moved = static_cast<float>(0.02 * place);
+        const field::Point p = shifted(s.graph, {moved, 2 * moved, 3 * moved});
+        const field::NodeRef across = p.x * static_cast<float>(std::cos(a)) - p.y * static_cast<float>(std::sin(a));
+        const field::NodeRef rod = sqrt(square(across) + square(p.z - (0.3f - sunk))) - radius;
+        const Box3f bounds{{-1.6f, -1.6f, -0.6f}, {1.6f, 1.6f, 1.2f}};
+        const field::Field wall = block(s.graph, {moved, 2 * moved, 3 * moved}, {1.2f, 1.2f, 0.3f});
+        const field::Owned both[] = {{wall, 1}, {{max(rod, abs(p.y) - 1.1f), bounds, 1, 0.5f}, 2}};
+        s.field = field::sum(s.graph, both);
+        const int resolution = 36;  // the rod is five cells thick, what stands out two cells high
+        const Mesh mesh = crispMesh(s, resolution);
+        size_t along = 0;
+        for (const auto& [from, to] : borderEdges(mesh))
+            for (const Vec3f end : {from, to}) {
+                const Vec3d at = (end - Vec3f{moved, 2 * moved, 3 * moved}).as<double>();
+                if (std::abs(at.z - 0.3) > 1e-4 || std::abs(at.y) > 0.9) continue;
+                const double u = at.x * std::cos(a) - at.y * std::sin(a), w = at.z - (0.3 - sunk);
+                EXPECT_NEAR(std::sqrt(u * u + w * w), radius, 0.01 * 3.2 / resolution) << place;
+                ++along;
+            }
+        EXPECT_GT(along, 40u) << place;
+    }
 }
 
 TEST(Crisp, RandomBoxesAreClosedAndDontCross) {
