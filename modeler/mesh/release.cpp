@@ -313,8 +313,8 @@ private:
         return false;
     }
 
-    /// Triangles that meet others wrongly, one of them with a vertex that has moved since this was asked last. Those of
-    /// whose vertices none is elsewhere than at first meet no others like that.
+    /// Triangles that meet others wrongly, one of them with a vertex that has moved since this was asked last, or with
+    /// another edge. Those that are as at first meet no others like that.
     std::vector<uint32_t> crossingTriangles(int threads, const Progress* progress) {
         std::vector<uint32_t> changed, crossing;
         for (Touched& touched : touched_) {
@@ -323,7 +323,10 @@ private:
             touched.isNew = false;
         }
         for (Move& move : moves_) move.compared = flat_.positions[move.vertex];
-        const auto isElsewhere = [&](uint32_t t) { return hasMovedFrom(&Move::before, flat_.triangles[t]); };
+        const auto isElsewhere = [&](uint32_t t) {
+            const Touched* const touched = touched_.of(t);
+            return (touched && touched->hasFlipped) || hasMovedFrom(&Move::before, flat_.triangles[t]);
+        };
         for (const auto& pair : findWrongMeetings(flat_.positions, flat_.triangles, changed, threads, progress))
             if (std::any_of(pair.begin(), pair.end(), isElsewhere))
                 crossing.insert(crossing.end(), pair.begin(), pair.end());
@@ -336,11 +339,12 @@ private:
     bool revert(const std::vector<uint32_t>& triangles) {
         bool some = false;
         for (const uint32_t t : triangles) some |= revertCorners(flat_.triangles[t]);
-        for (bool again = some; again;) {
+        for (bool again = true; again; some |= again) {
             again = false;
             for (Flips& flips : flips_) {
                 const auto isHeld = [&](const Flips::Side& side) {
-                    return !isBack(side.corners.x) && !isBack(side.corners.y) && !isBack(side.corners.z);
+                    return !isBack(side.corners.x) && !isBack(side.corners.y) && !isBack(side.corners.z) &&
+                           std::find(triangles.begin(), triangles.end(), side.triangle) == triangles.end();
                 };
                 if (flips.undone || std::all_of(flips.sides.begin(), flips.sides.end(), isHeld)) continue;
                 restore(flips);
