@@ -1,4 +1,5 @@
-// A file manager that drops a file: the source's side of the XDND protocol, version 5 (freedesktop.org).
+// What a desktop does to the window. A file manager that drops a file: the source's side of the XDND protocol, version
+// 5 (freedesktop.org); a window manager whose button for closing is pressed.
 #include "tests/window/simulated_user.h"
 
 #include <chrono>
@@ -99,6 +100,20 @@ void SimulatedUser::dropFile(const std::filesystem::path& file) {
     EXPECT_TRUE(Source(display, "file://" + file.string() + "\r\n").drop(640, 400)) << "the window takes no drop";
     XCloseDisplay(display);
     settled();
+}
+
+void SimulatedUser::requestClose() {
+    Display* display = XOpenDisplay(display_.c_str());
+    ASSERT_NE(display, nullptr);
+    XEvent event{};
+    event.xclient.type = ClientMessage;
+    event.xclient.window = takerBelow(display, DefaultRootWindow(display), XInternAtom(display, "XdndAware", False));
+    event.xclient.message_type = XInternAtom(display, "WM_PROTOCOLS", False);
+    event.xclient.format = 32;
+    event.xclient.data.l[0] = static_cast<long>(XInternAtom(display, "WM_DELETE_WINDOW", False));
+    XSendEvent(display, event.xclient.window, False, NoEventMask, &event);
+    XFlush(display);
+    XCloseDisplay(display);
 }
 
 }  // namespace sgm::window::test

@@ -68,6 +68,8 @@ protected:
     void keys(const std::vector<std::string>& keys);
     /// Drops a file on the window as a file manager does.
     void dropFile(const std::filesystem::path& file);
+    /// Asks the window to close, as a window manager does; waits for nothing.
+    void requestClose();
     void type(const std::string& text);
     /// A click and then commands, all sent at once.
     void burst(const std::string& widget, const std::vector<std::string>& keys);

@@ -1,8 +1,10 @@
 #include "viewer/window/app.h"
 #include "viewer/window/pictures.h"
 
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -36,6 +38,11 @@ private:
     void left(ImVec2 low, ImVec2 size, FrameTimeline& timeline);
     void right(ImVec2 low, ImVec2 size, FrameTimeline& timeline);
     void view(ImVec2 low, ImVec2 size, FrameTimeline& timeline);
+    /// A command of the keyboard that is about the document ends a field that takes keys, which writes what was typed
+    /// there into the text. Call before the fields. True where it did.
+    bool leaveField();
+    /// Keys for all of the window.
+    void keys(bool leftField);
     void splitter(const char* name, float x, float y, float height, float width, std::optional<float>& chosen,
                   float sign);
 
@@ -127,7 +134,28 @@ void Workspace::view(ImVec2 low, ImVec2 size, FrameTimeline& timeline) {
     timeline.was("panel View", drawn() - before);
 }
 
+bool Workspace::leaveField() {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool commands =
+        io.KeyCtrl && (ImGui::IsKeyPressed(GLFW_KEY_S, false) || ImGui::IsKeyPressed(GLFW_KEY_O, false));
+    if (!commands || !io.WantTextInput || bench_.panels.typing || ImGui::GetTopMostPopupModal()) return false;
+    ImGui::ClearActiveID();
+    return true;
+}
+
+void Workspace::keys(bool leftField) {
+    if (ImGui::GetTopMostPopupModal()) return;  // a dialog takes all keys
+    if (ImGui::GetIO().WantTextInput && !bench_.panels.typing && !leftField) return;
+    bars_.keys(bench_);
+    const bool listOpen = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+    if (listOpen && ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) ImGui::ClosePopupToLevel(0, true);
+    if (listOpen || bench_.panels.typing) return;
+    parameters_.keys(bench_);
+    viewKeys(bench_);
+}
+
 void Workspace::show(FrameTimeline& timeline) {
+    const bool leftField = leaveField();
     const ImGuiIO& io = ImGui::GetIO();
     const float leftWidth = left_.value_or(std::clamp(io.DisplaySize.x * 0.23f, 280.0f, 430.0f)),
                 rightWidth = right_.value_or(std::clamp(io.DisplaySize.x * 0.31f, 340.0f, 560.0f));
@@ -153,13 +181,7 @@ void Workspace::show(FrameTimeline& timeline) {
     splitter("##right", io.DisplaySize.x - rightWidth, bar, height, rightWidth, right_, -1);
     ImGui::PopStyleVar();
     timeline.was("panel Problems");
-    if (!io.WantTextInput || bench_.panels.typing) {
-        bars_.keys(bench_);
-        if (!bench_.panels.typing) {
-            parameters_.keys(bench_);
-            viewKeys(bench_);
-        }
-    }
+    keys(leftField);
     timeline.was("keys");
     bars_.dialogs(bench_);
     timeline.was("dialogs");
@@ -329,7 +351,10 @@ std::optional<int> Loop::turn() {
     window_.listen(wanted_ > 0 || refining_ ? 0 : working ? shownEvery : listenFor);
     const Stopwatch whole;
     FrameTimeline timeline;
-    if (window_.closing() && bench_.mayClose()) return 0;
+    if (window_.closing()) {
+        if (bench_.mayClose()) return 0;
+        wanted_ = settlingFrames;  // for its question
+    }
     takeNews(timeline);
     const Result<bool> ended = refineWhenDue();
     if (!ended) return fail(ended.error());

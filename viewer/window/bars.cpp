@@ -17,6 +17,8 @@ namespace {
 
 using namespace widgets;
 
+constexpr float widthForAll = 62;  // of the bar, in font sizes: a narrower one leaves out what a key does as well
+
 void gap() {
     ImGui::SameLine(0, 14);
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -37,11 +39,15 @@ void Bars::top(Workbench& bench) {
     ImGui::SameLine(0, 4);
     ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(tint::selected), "%s", document.dirty() ? "•" : " ");
     ImGui::SameLine(0, 10);
-    if (quietButton(report, "bar.open", "Open", "Open a grammar (Ctrl+O), or drop it on the window")) opening_ = true;
+    if (quietButton(report, "bar.open", "Open", "Open a grammar (Ctrl+O), or drop it on the window")) dialogs_.open();
     ImGui::SameLine(0, 2);
-    if (quietButton(report, "bar.save", "Save", "Write the file (Ctrl+S)", document.dirty()))
-        document.path().empty() ? void(naming_ = true) : bench.save();
+    if (quietButton(report, "bar.save", "Save", "Write the file (Ctrl+S)", document.dirty())) bench.save();
     ImGui::SameLine(0, 2);
+    if (ImGui::GetWindowWidth() > ImGui::GetFontSize() * widthForAll) {
+        if (quietButton(report, "bar.save_as", "Save as", "Write another file (Ctrl+Shift+S)"))
+            bench.panels.naming = Naming{};
+        ImGui::SameLine(0, 2);
+    }
     const std::string undo = fmt::format("Take back: {} (Ctrl+Z)", document.history().undoLabel()),
                       redo = fmt::format("Do again: {} (Ctrl+Y)", document.history().redoLabel());
     if (quietButton(report, "bar.undo", "Undo", document.history().canUndo() ? undo.c_str() : nullptr,
@@ -193,13 +199,13 @@ void Bars::keys(Workbench& bench) {
         if (bench.document.dragging() && bench.busy()) bench.cancel();
     }
     if (io.KeyCtrl) {
-        if (pressed(GLFW_KEY_S)) bench.document.path().empty() ? void(naming_ = true) : bench.save();
-        if (pressed(GLFW_KEY_O)) opening_ = true;
+        if (pressed(GLFW_KEY_S)) io.KeyShift ? void(bench.panels.naming = Naming{}) : bench.save();
+        if (pressed(GLFW_KEY_O)) dialogs_.open();
         if (ImGui::IsKeyPressed(GLFW_KEY_Z)) io.KeyShift ? bench.redo() : bench.undo();
         if (ImGui::IsKeyPressed(GLFW_KEY_Y)) bench.redo();
         return;
     }
-    if (bench.panels.typing) return;
+    if (bench.panels.typing || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
     const auto free = [&](int key) {
         return pressed(key) && bench.panels.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos;
     };
@@ -210,9 +216,7 @@ void Bars::keys(Workbench& bench) {
 
 void Bars::dialogs(Workbench& bench) {
     if (help_) cheatSheet(bench);
-    openDialog(bench);
-    saveDialog(bench);
-    questions(bench);
+    dialogs_.show(bench);
 }
 
 void Bars::cheatSheet(Workbench& bench) {
@@ -234,6 +238,7 @@ void Bars::cheatSheet(Workbench& bench) {
         {"P", "Picture of the view beside the file"},
         {"T", "Turntable: 36 pictures"},
         {"Ctrl+S  Ctrl+O", "Save, open"},
+        {"Ctrl+Shift+S", "Save under another name"},
         {"Ctrl+Z  Ctrl+Y", "Undo, redo"},
         {"F1", "This sheet"}};
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -267,96 +272,6 @@ void Bars::cheatSheet(Workbench& bench) {
             {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
     }
     ImGui::End();
-}
-
-void Bars::openDialog(Workbench& bench) {
-    namespace fs = std::filesystem;
-    if (std::exchange(opening_, false)) {
-        const fs::path here =
-            bench.document.path().empty() ? fs::current_path() : fs::absolute(bench.document.path()).parent_path();
-        folder_ = here.lexically_normal().string();
-        ImGui::OpenPopup("Open a grammar");
-    }
-    ImGui::SetNextWindowSize({ImGui::GetFontSize() * 34, ImGui::GetFontSize() * 30});
-    if (!ImGui::BeginPopupModal("Open a grammar", nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
-    field(bench.report, "open.folder", folder_);
-    std::error_code failed;
-    std::vector<fs::path> folders, files;
-    if (fs::is_directory(folder_, failed))
-        for (const fs::directory_entry& entry : fs::directory_iterator(folder_, failed)) {
-            if (entry.path().filename().string().starts_with('.')) continue;
-            if (entry.is_directory(failed))
-                folders.push_back(entry.path());
-            else if (entry.path().extension() == ".sgm")
-                files.push_back(entry.path());
-        }
-    std::sort(folders.begin(), folders.end());
-    std::sort(files.begin(), files.end());
-    if (ImGui::BeginChild("files", {0, -ImGui::GetFrameHeightWithSpacing() - 4}, true)) {
-        const fs::path parent = fs::path(folder_).parent_path();
-        if (ImGui::Selectable("..", false, ImGuiSelectableFlags_DontClosePopups)) folder_ = parent.string();
-        for (const fs::path& path : folders)
-            if (ImGui::Selectable((path.filename().string() + "/").c_str(), false,
-                                  ImGuiSelectableFlags_DontClosePopups))
-                folder_ = path.string();
-        for (const fs::path& path : files) {
-            if (ImGui::Selectable(path.filename().c_str())) {
-                bench.drop(path);
-                ImGui::CloseCurrentPopup();
-            }
-            bench.report.mark("open." + path.filename().string());
-        }
-    }
-    ImGui::EndChild();
-    if (button(bench.report, "open.cancel", "Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE))
-        ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
-}
-
-void Bars::saveDialog(Workbench& bench) {
-    if (std::exchange(naming_, false)) {
-        name_ = (std::filesystem::current_path() / "untitled.sgm").string();
-        ImGui::OpenPopup("Save as");
-    }
-    ImGui::SetNextWindowSize({ImGui::GetFontSize() * 34, 0});
-    if (!ImGui::BeginPopupModal("Save as", nullptr, ImGuiWindowFlags_NoSavedSettings)) return;
-    field(bench.report, "save.name", name_);
-    if (button(bench.report, "save.save", "Save")) {
-        const Status s = bench.document.saveAs(name_);
-        s ? bench.say("Saved " + name_) : bench.say(s.error().message, true);
-        ImGui::CloseCurrentPopup();
-    }
-    ImGui::SameLine();
-    if (button(bench.report, "save.cancel", "Cancel")) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
-}
-
-void Bars::questions(Workbench& bench) {
-    if (bench.panels.question && !ImGui::IsPopupOpen("Question")) ImGui::OpenPopup("Question");
-    const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
-    if (!ImGui::BeginPopupModal(
-            "Question", nullptr,
-            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize))
-        return;
-    if (bench.panels.question) {
-        ImGui::PushTextWrapPos(ImGui::GetFontSize() * 28);
-        ImGui::TextUnformatted(bench.panels.question->text.c_str());
-        ImGui::PopTextWrapPos();
-        ImGui::Dummy({0, 4});
-        const auto answers = bench.panels.question->answers;
-        for (size_t i = 0; i < answers.size(); ++i) {
-            if (i > 0) ImGui::SameLine();
-            if (!button(bench.report, "answer." + answers[i].first, answers[i].first.c_str())) continue;
-            bench.panels.question.reset();
-            if (answers[i].second) answers[i].second();
-            ImGui::CloseCurrentPopup();
-            break;
-        }
-    } else {
-        ImGui::CloseCurrentPopup();
-    }
-    ImGui::EndPopup();
 }
 
 }  // namespace sgm::window

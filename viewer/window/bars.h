@@ -1,7 +1,8 @@
-// The bar at the top with what concerns all of the window, the line at the bottom, and the dialogs.
+// The bar at the top with what concerns all of the window, the line at the bottom, and the keys of both.
 // Enters: the workbench. Leaves: its verbs called. Assumes a frame of ImGui.
 #pragma once
 
+#include "viewer/window/dialogs.h"
 #include "viewer/window/workbench.h"
 
 namespace sgm::window {
@@ -20,14 +21,11 @@ public:
 private:
     void lookControls(Workbench& bench);
     void meshControls(Workbench& bench);
-    void openDialog(Workbench& bench);
-    void saveDialog(Workbench& bench);
-    void questions(Workbench& bench);
     void cheatSheet(Workbench& bench);
 
-    bool help_ = false, opening_ = false, naming_ = false;
+    bool help_ = false;
     bool wrapped_ = false;  ///< the mesh's controls have a line of their own
-    std::string folder_, name_;
+    Dialogs dialogs_;
 };
 
 }  // namespace sgm::window

@@ -267,7 +267,7 @@ std::optional<std::string> CodeEditor::show(Report& report, const std::string& t
             {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
         const ImVec2 origin = ImGui::GetCursorScreenPos();
         mouse(text, origin);
-        if (active_) {
+        if (active_ && !ImGui::GetTopMostPopupModal()) {  // a dialog takes the keys
             changed = keys(text);
             ImGui::GetCurrentContext()->WantTextInputNextFrame = 1;
         }

@@ -1,5 +1,6 @@
 #include "viewer/window/widgets.h"
 
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -91,6 +92,11 @@ bool field(Report& report, const std::string& name, std::string& text, const cha
     ImGui::PopID();
     report.mark(name);
     return changed;
+}
+
+bool entered() {
+    return ImGui::IsItemDeactivated() &&
+           (ImGui::IsKeyPressed(GLFW_KEY_ENTER, false) || ImGui::IsKeyPressed(GLFW_KEY_KP_ENTER, false));
 }
 
 void heading(const char* text) {

@@ -23,6 +23,8 @@ bool toggle(Report& report, const std::string& name, const char* label, bool& va
 bool choice(Report& report, const std::string& name, std::span<const std::string> items, int& value, float width = 0);
 /// A line of text; true when it was ended with Enter or left, changed.
 bool field(Report& report, const std::string& name, std::string& text, const char* hint = nullptr, float width = 0);
+/// Enter was pressed in the field just made: it presses the button that belongs to the field.
+bool entered();
 /// A heading within a panel.
 void heading(const char* text);
 /// The text, its end replaced by "…" where it is wider than `width` pixels.

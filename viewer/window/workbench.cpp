@@ -25,6 +25,7 @@ Status Workbench::open(const std::filesystem::path& path) {
 
 void Workbench::show(document::Document other) {
     document = std::move(other);
+    panels.naming.reset();  // it was about the document before
     selected_ = derive::none;
     view.framed = false;
     view.mesh.clear();
@@ -57,6 +58,10 @@ void Workbench::redo() {
 }
 
 void Workbench::save(bool overwrite) {
+    if (document.path().empty()) {
+        panels.naming = Naming{};
+        return;
+    }
     const Status s = document.save(overwrite);
     s ? say(fmt::format("Saved {}", document.path().string())) : say(s.error().message, true);
 }

@@ -53,6 +53,11 @@ struct Question {
     std::vector<std::pair<std::string, std::function<void()>>> answers;  ///< an empty function only closes it
 };
 
+/// The grammar is to be saved under a name that the user chooses.
+struct Naming {
+    std::function<void()> then;  ///< what goes on once it is saved; may be empty
+};
+
 /// Pictures from all around, one a turn of 360° / count.
 struct Turntable {
     int next = 0, count = 36;
@@ -93,7 +98,8 @@ struct Panels {
     std::string hotkeys;                                  ///< of the grammar's parameters: they go before the view's
     bool typing = false;                                  ///< the text takes keys
     std::optional<Question> question;
-    bool leaving = false;  ///< the window may close
+    std::optional<Naming> naming;  ///< "Save as" is open, or opens next
+    bool leaving = false;          ///< the window may close
 };
 
 /// Pictures that were asked for.
@@ -122,6 +128,7 @@ public:
     void edit(const document::edits::Edit& edit, const std::string& label);
     void undo();
     void redo();
+    /// Writes the document's file; asks for a name where it has none.
     void save(bool overwrite = false);
     /// Asks whether to go on with what a crash left behind of this document; where none is open, of any. Says so where
     /// it left something of another one.

@@ -13,6 +13,16 @@ bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
     return std::filesystem::equivalent(a, b, failed) || (failed && a.lexically_normal() == b.lexically_normal());
 }
 
+/// Saves, under a name to be chosen where there is none, and goes on once that is done.
+void saveThen(Workbench& bench, const std::function<void()>& then) {
+    if (bench.document.path().empty()) {
+        bench.panels.naming = Naming{then};
+        return;
+    }
+    bench.save();
+    if (!bench.document.dirty()) then();
+}
+
 }  // namespace
 
 void Workbench::offerAbandoned() {
@@ -51,24 +61,14 @@ void Workbench::drop(const std::filesystem::path& path) {
     if (!document.dirty()) return go();
     panels.question = Question{
         fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
-        {{"Save and open",
-          [this, go] {
-              save();
-              if (!document.dirty()) go();
-          }},
-         {"Open without saving", go},
-         {"Stay", {}}}};
+        {{"Save and open", [this, go] { saveThen(*this, go); }}, {"Open without saving", go}, {"Stay", {}}}};
 }
 
 bool Workbench::mayClose() {
     if (!document.dirty()) return true;
     panels.question = Question{
         fmt::format("{} isn't saved.", document.path().empty() ? "This grammar" : document.path().filename().string()),
-        {{"Save and close",
-          [this] {
-              save();
-              panels.leaving = !document.dirty();
-          }},
+        {{"Save and close", [this] { saveThen(*this, [this] { panels.leaving = true; }); }},
          {"Close without saving", [this] { panels.leaving = true; }},
          {"Stay", {}}}};
     return false;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "viewer/document/typed_path.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/style.h"
 #include "viewer/window/widgets.h"
@@ -98,7 +99,7 @@ void ExportPanel::show(Workbench& bench) {
     ImGui::Dummy({0, 4});
     if (button(bench.report, "export.export", "Export", nullptr, bench.shown() && !bench.exporting.running())) {
         document::ExportRequest request;
-        request.file = file_;
+        request.file = document::typedPath(file_);
         request.resolution = resolution_;
         request.keep = static_cast<mesh::Keep>(keep_);
         request.objects = objects_;
