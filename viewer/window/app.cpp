@@ -8,6 +8,8 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <type_traits>
+#include <utility>
 
 #include "viewer/window/bars.h"
 #include "viewer/window/benchmark.h"
@@ -102,8 +104,10 @@ void Workspace::right(ImVec2 low, ImVec2 size, FrameTimeline& timeline) {
     bench_.panels.typing = false;
     const char* shown = "tabs";
     if (begin("Right", low, size) && ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_NoTooltip)) {
+        const bool toText = std::exchange(bench_.panels.showText, false);
         const auto tab = [&](const char* name, const char* part, auto&& panel) {
-            const bool open = ImGui::BeginTabItem(name);
+            const bool chosen = toText && std::is_same_v<decltype(panel), TextPanel&>;
+            const bool open = ImGui::BeginTabItem(name, nullptr, chosen ? ImGuiTabItemFlags_SetSelected : 0);
             bench_.report.mark(std::string("tab.") + name);
             if (!open) return false;
             panel.show(bench_);
@@ -135,10 +139,9 @@ void Workspace::view(ImVec2 low, ImVec2 size, FrameTimeline& timeline) {
 }
 
 bool Workspace::leaveField() {
-    const ImGuiIO& io = ImGui::GetIO();
-    const bool commands =
-        io.KeyCtrl && (ImGui::IsKeyPressed(GLFW_KEY_S, false) || ImGui::IsKeyPressed(GLFW_KEY_O, false));
-    if (!commands || !io.WantTextInput || bench_.panels.typing || ImGui::GetTopMostPopupModal()) return false;
+    const auto pressed = [](int key) { return ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(key, false); };
+    const bool inField = ImGui::GetIO().WantTextInput && !bench_.panels.typing && !ImGui::GetTopMostPopupModal();
+    if (!inField || (!pressed(GLFW_KEY_S) && !pressed(GLFW_KEY_O))) return false;
     ImGui::ClearActiveID();
     return true;
 }
@@ -335,7 +338,9 @@ void Loop::draw(FrameTimeline& timeline, const Stopwatch& whole) {
     window_.setTitle(titleOf(bench_.document));
     window_.beginFrame();
     timeline.was("start of a frame");
+    const bool reveals = bench_.panels.reveal.has_value();
     workspace_.show(timeline);
+    if (reveals && !bench_.panels.reveal) wanted_ = settlingFrames;  // the text scrolls in the next frame
     window_.endFrame();
     timeline.drew();
     frameSeconds_ = whole.seconds();

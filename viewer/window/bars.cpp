@@ -240,6 +240,8 @@ void Bars::cheatSheet(Workbench& bench) {
         {"Ctrl+S  Ctrl+O", "Save, open"},
         {"Ctrl+Shift+S", "Save under another name"},
         {"Ctrl+Z  Ctrl+Y", "Undo, redo"},
+        {"Ctrl+F  F3", "In the text: find, go on"},
+        {"Ctrl+/  Tab", "In the text: make comments of lines, indent them"},
         {"F1", "This sheet"}};
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});

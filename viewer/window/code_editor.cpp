@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "viewer/window/style.h"
+#include "viewer/window/widgets.h"
 
 namespace sgm::window {
 namespace {
@@ -67,7 +68,7 @@ float widthOf(const std::string& text, uint32_t begin, uint32_t end) {
 void CodeEditor::reveal(uint32_t begin, uint32_t end) {
     anchor_ = begin;
     caret_ = end;
-    follow_ = true;
+    follow_ = Follow::Selection;
 }
 
 uint32_t CodeEditor::lineOf(uint32_t offset) const {
@@ -175,38 +176,54 @@ std::string CodeEditor::replaced(const std::string& text, uint32_t begin, uint32
     std::string changed = text;
     changed.replace(begin, end - begin, by);
     caret_ = anchor_ = begin + static_cast<uint32_t>(by.size());
-    follow_ = true;
+    follow_ = Follow::Caret;
     wantedX_ = -1;
     return changed;
 }
 
 void CodeEditor::moveBy(const std::string& text) {
     const ImGuiIO& io = ImGui::GetIO();
-    const uint32_t was = caret_, line = lineOf(caret_);
+    const uint32_t line = lineOf(caret_);
     const auto pressed = [](int key) { return ImGui::IsKeyPressed(key); };
+    const auto [from, to] = selection();
+    const bool drops = from < to && !io.KeyShift;  // what is selected: the caret goes to that side of it
     const int page = std::max(1, static_cast<int>(ImGui::GetWindowHeight() / height_) - 1);
-    int rows = (pressed(GLFW_KEY_DOWN) ? 1 : 0) - (pressed(GLFW_KEY_UP) ? 1 : 0) +
-               (pressed(GLFW_KEY_PAGE_DOWN) ? page : 0) - (pressed(GLFW_KEY_PAGE_UP) ? page : 0);
+    const int rows = (pressed(GLFW_KEY_DOWN) ? 1 : 0) - (pressed(GLFW_KEY_UP) ? 1 : 0) +
+                     (pressed(GLFW_KEY_PAGE_DOWN) ? page : 0) - (pressed(GLFW_KEY_PAGE_UP) ? page : 0);
+    const bool left = pressed(GLFW_KEY_LEFT), right = pressed(GLFW_KEY_RIGHT), home = pressed(GLFW_KEY_HOME),
+               end = pressed(GLFW_KEY_END);
+    if (rows == 0 && !left && !right && !home && !end) return;
     if (rows != 0) {
         if (wantedX_ < 0) wantedX_ = xOf(text, line, caret_);
-        const int to = std::clamp(static_cast<int>(line) + rows, 0, static_cast<int>(starts_.size()) - 1);
-        caret_ = offsetAt(text, static_cast<uint32_t>(to), wantedX_);
+        const int row = std::clamp(static_cast<int>(line) + rows, 0, static_cast<int>(starts_.size()) - 1);
+        caret_ = offsetAt(text, static_cast<uint32_t>(row), wantedX_);
+    } else {
+        wantedX_ = -1;
     }
-    const float kept = wantedX_;
-    if (pressed(GLFW_KEY_LEFT)) {
+    if (left && drops && !io.KeyCtrl) {
+        caret_ = from;
+    } else if (left) {
         caret_ = before(text, caret_);
         while (io.KeyCtrl && caret_ > 0 && (isWord(text[caret_ - 1]) || !isWord(text[caret_]))) --caret_;
     }
-    if (pressed(GLFW_KEY_RIGHT)) {
+    if (right && drops && !io.KeyCtrl) {
+        caret_ = to;
+    } else if (right) {
         caret_ = after(text, caret_);
         while (io.KeyCtrl && caret_ < text.size() && (isWord(text[caret_]) || !isWord(text[caret_ - 1]))) ++caret_;
     }
-    if (pressed(GLFW_KEY_HOME)) caret_ = io.KeyCtrl ? 0 : starts_[line];
-    if (pressed(GLFW_KEY_END)) caret_ = io.KeyCtrl ? static_cast<uint32_t>(text.size()) : endOf(text, line);
-    if (caret_ == was) return;
-    wantedX_ = rows != 0 ? kept : -1;
+    if (home) caret_ = io.KeyCtrl ? 0 : starts_[line];
+    if (end) caret_ = io.KeyCtrl ? static_cast<uint32_t>(text.size()) : endOf(text, line);
     if (!io.KeyShift) anchor_ = caret_;
-    follow_ = true;
+    follow_ = Follow::Caret;
+}
+
+std::string CodeEditor::taken(document::EditedText edited) {
+    caret_ = edited.caret;
+    anchor_ = edited.anchor;
+    follow_ = Follow::Caret;
+    wantedX_ = -1;
+    return std::move(edited.text);
 }
 
 std::optional<std::string> CodeEditor::keys(const std::string& text) {
@@ -223,10 +240,14 @@ std::optional<std::string> CodeEditor::keys(const std::string& text) {
         if (pressed(GLFW_KEY_X) && selected) return replaced(text, from, to, "");
         if (pressed(GLFW_KEY_V))
             if (const char* clip = ImGui::GetClipboardText()) return replaced(text, from, to, clip);
+        if (pressed(GLFW_KEY_SLASH) || pressed(GLFW_KEY_KP_DIVIDE))
+            return taken(document::commented({text, caret_, anchor_}));
         return std::nullopt;
     }
     if (pressed(GLFW_KEY_BACKSPACE)) return replaced(text, selected ? from : before(text, from), to, "");
     if (pressed(GLFW_KEY_DELETE)) return replaced(text, from, selected ? to : after(text, to), "");
+    if (pressed(GLFW_KEY_TAB) && (selected || io.KeyShift))
+        return taken(document::indented({text, caret_, anchor_}, io.KeyShift));
     if (pressed(GLFW_KEY_TAB)) return replaced(text, from, to, "  ");
     if (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER)) {
         // The new line begins below the old one.
@@ -245,11 +266,29 @@ std::optional<std::string> CodeEditor::keys(const std::string& text) {
 }
 
 void CodeEditor::follow(const std::string& text) {
-    const uint32_t at = std::min(caret_, static_cast<uint32_t>(text.size()));
-    const uint32_t row = rowOf_[lineOf(std::min(anchor_, at))];
-    const float y = static_cast<float>(row) * height_;
+    const auto size = static_cast<uint32_t>(text.size());
+    const uint32_t caret = std::min(caret_, size), at = follow_ == Follow::Caret ? caret : std::min(anchor_, caret);
+    follow_ = Follow::No;
+    const float y = static_cast<float>(rowOf_[lineOf(at)]) * height_;
     if (y < ImGui::GetScrollY() + height_ || y > ImGui::GetScrollY() + ImGui::GetWindowHeight() - 3 * height_)
         ImGui::SetScrollY(std::max(0.0f, y - ImGui::GetWindowHeight() * 0.35f));
+    // Sideways: all of a word that is shown, or its first part where it is wider than the window.
+    const float margin = height_ * 2, width = ImGui::GetWindowWidth() - margin, begin = xOf(text, lineOf(at), at);
+    const float end = lineOf(caret) == lineOf(at) ? std::max(begin, xOf(text, lineOf(at), caret)) : begin;
+    float x = ImGui::GetScrollX();
+    if (end > x + width) x = end - width;
+    if (begin < x + gutter_) x = begin < width ? 0 : begin - gutter_ - margin;
+    if (x != ImGui::GetScrollX()) ImGui::SetScrollX(x);
+}
+
+void CodeEditor::drawNote(const LineNote& note, ImVec2 low) {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 left(ImGui::GetWindowPos().x, low.y), right(left.x + ImGui::GetWindowWidth(), low.y + height_);
+    list.AddRectFilled(left, right, (note.color & 0x00ffffff) | 0x24000000);
+    // Where the line is scrolled sideways its note stays in sight, a wide one with its end.
+    const float farthest = std::min(left.x + 8, right.x - 8 - ImGui::CalcTextSize(note.text.c_str()).x);
+    list.AddText({std::max(low.x + gutter_, farthest), low.y + 1}, note.color, note.text.c_str());
+    if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(left, right)) widgets::tooltip(note.text.c_str());
 }
 
 std::optional<std::string> CodeEditor::show(Report& report, const std::string& text,
@@ -293,15 +332,15 @@ std::optional<std::string> CodeEditor::show(Report& report, const std::string& t
                             {low.x + xOf(text, row.line, endOf(text, row.line)), low.y + height_});
             } else {
                 const LineNote& note = notes[size_t(row.note)];
-                list.AddRectFilled({ImGui::GetWindowPos().x, low.y},
-                                   {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), low.y + height_},
-                                   (note.color & 0x00ffffff) | 0x24000000);
-                list.AddText({low.x + gutter_, low.y + 1}, note.color, note.text.c_str());
+                drawNote(note, low);
+                report.mark(fmt::format("note.{}", row.note), {ImGui::GetWindowPos().x, low.y},
+                            {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), low.y + height_});
                 widest = std::max(widest, gutter_ + ImGui::CalcTextSize(note.text.c_str()).x);
             }
         }
         ImGui::Dummy({widest + 20, static_cast<float>(rows_.size()) * height_ + ImGui::GetWindowHeight() * 0.3f});
-        if (std::exchange(follow_, false)) follow(text);
+        scrolled_ = ImGui::GetScrollX();
+        if (follow_ != Follow::No && !changed) follow(text);  // lines that have changed are laid out in the next frame
     }
     ImGui::EndChild();
     ImGui::PopStyleColor();

@@ -12,6 +12,7 @@
 #include <imgui.h>
 
 #include "viewer/document/colours.h"
+#include "viewer/document/line_edits.h"
 #include "viewer/window/report.h"
 
 namespace sgm::window {
@@ -36,9 +37,13 @@ public:
     /// It takes keys.
     bool active() const { return active_; }
     void leave() { active_ = false; }
+    /// Takes keys from now on.
+    void enter() { active_ = true; }
     uint32_t caret() const { return caret_; }
     /// The bytes that are selected; empty where the caret stands alone.
     std::pair<uint32_t, uint32_t> selection() const { return std::minmax(caret_, anchor_); }
+    /// How far it is scrolled sideways, pixels.
+    float scrolled() const { return scrolled_; }
     /// The pointer put the caret somewhere in the last `show`.
     bool clicked() const { return clicked_; }
 
@@ -53,8 +58,12 @@ private:
     void mouse(const std::string& text, ImVec2 origin);
     std::optional<std::string> keys(const std::string& text);
     void moveBy(const std::string& text);
-    /// Scrolls to the caret, or to where what is selected begins.
+    /// The text after an edit of its lines.
+    std::string taken(document::EditedText edited);
+    /// Scrolls both ways to what `follow_` says.
     void follow(const std::string& text);
+    /// Its row; all of it while the pointer rests there.
+    void drawNote(const LineNote& note, ImVec2 low);
     std::string replaced(const std::string& text, uint32_t begin, uint32_t end, const std::string& by);
     float xOf(const std::string& text, uint32_t line, uint32_t offset) const;
     uint32_t offsetAt(const std::string& text, uint32_t line, float x) const;
@@ -62,11 +71,13 @@ private:
     uint32_t endOf(const std::string& text, uint32_t line) const;
     uint32_t caret_ = 0, anchor_ = 0;  ///< bytes; equal without a selection
     float wantedX_ = -1;               ///< where a caret that moves up and down would stand
-    bool active_ = false, follow_ = false, clicked_ = false;
+    bool active_ = false, clicked_ = false;
+    /// What is to be seen.
+    enum class Follow { No, Caret, Selection } follow_ = Follow::No;
     std::vector<uint32_t> starts_;  ///< of lines
     std::vector<Row> rows_;
     std::vector<uint32_t> rowOf_;  ///< by line
-    float gutter_ = 0, height_ = 0;
+    float gutter_ = 0, height_ = 0, scrolled_ = 0;
 };
 
 }  // namespace sgm::window

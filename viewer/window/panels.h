@@ -15,6 +15,7 @@
 #include "viewer/document/rule_rows.h"
 #include "viewer/document/shape_rows.h"
 #include "viewer/window/code_editor.h"
+#include "viewer/window/text_search.h"
 #include "viewer/window/workbench.h"
 
 namespace sgm::window {
@@ -106,6 +107,7 @@ public:
 
 private:
     CodeEditor editor_;
+    TextSearch search_;
     std::shared_ptr<const syntax::Ast> colored_;
     std::vector<std::vector<document::Coloured>> colors_;
 };

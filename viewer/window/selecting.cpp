@@ -16,6 +16,7 @@ void revealPlace(Workbench& bench, const document::Problem& problem) {
     const uint32_t end =
         problem.endLine == problem.line ? start + problem.endColumn - 1 : start + static_cast<uint32_t>(line.size());
     bench.panels.reveal = {begin, std::max(begin, end)};
+    bench.panels.showText = true;
 }
 
 void selectText(Workbench& bench, uint32_t offset) {

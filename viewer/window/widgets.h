@@ -33,5 +33,7 @@ std::string shortened(const std::string& text, float width);
 void faint(const std::string& text);
 /// Explains the widget just made while the pointer rests on it.
 void hint(const char* text);
+/// A tip at the pointer, its lines wrapped.
+void tooltip(const char* text);
 
 }  // namespace sgm::window::widgets

@@ -94,6 +94,7 @@ struct Panels {
     std::string notice;
     bool noticeIsProblem = false;
     std::optional<std::pair<uint32_t, uint32_t>> reveal;  ///< bytes of the text to show, taken by the Text panel
+    bool showText = false;                                ///< the Text panel is to come to the front
     std::optional<uint32_t> revealRule;                   ///< a byte of the rule to show, taken by the Rules panel
     std::string hotkeys;                                  ///< of the grammar's parameters: they go before the view's
     bool typing = false;                                  ///< the text takes keys

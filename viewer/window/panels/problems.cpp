@@ -4,6 +4,7 @@
 #include "viewer/window/panels.h"
 #include "viewer/window/selecting.h"
 #include "viewer/window/style.h"
+#include "viewer/window/widgets.h"
 
 namespace sgm::window {
 
@@ -21,6 +22,8 @@ void problemsPanel(Workbench& bench) {
         const std::string place = p.line ? fmt::format("line {}: ", p.line) : std::string();
         const std::string text = place + p.message + (p.hint.empty() ? "" : "  -  " + p.hint);
         if (ImGui::Selectable(text.c_str()) && p.line) revealPlace(bench, p);
+        // A row may be cut, and what to write instead stands at its end.
+        widgets::hint((place + p.message + (p.hint.empty() ? "" : "\n" + p.hint)).c_str());
         bench.report.mark(fmt::format("problem.{}", i));
         ImGui::PopID();
     }

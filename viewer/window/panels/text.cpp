@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <nlohmann/json.hpp>
 
@@ -34,12 +35,19 @@ void TextPanel::show(Workbench& bench) {
         editor_.reveal(bench.panels.reveal->first, bench.panels.reveal->second);
         bench.panels.reveal.reset();
     }
+    if (!ImGui::GetTopMostPopupModal() && (editor_.active() || !ImGui::GetIO().WantTextInput))
+        search_.keys(bench.document.text(), editor_);
+    const bool found = search_.show(bench.report, bench.document.text(), editor_);
     const std::optional<std::string> typed = editor_.show(bench.report, bench.document.text(), colors_, notesOf(bench));
+    if (found) editor_.enter();
     bench.panels.typing = editor_.active();
     const auto [begin, end] = editor_.selection();
-    if (bench.report.active())
+    if (bench.report.active()) {
         bench.report.state()["textSelection"] =
             bench.document.text().substr(std::min<size_t>(begin, bench.document.text().size()), end - begin);
+        bench.report.state()["caret"] = editor_.caret();
+        bench.report.state()["textScroll"] = editor_.scrolled();
+    }
     if (typed)
         bench.document.type(*typed);
     else if (editor_.clicked())
