@@ -158,5 +158,47 @@ TEST_F(Dialogs, ACommandEndsAFieldFirst) {
     EXPECT_NE(fileText().find("wide = 3"), std::string::npos) << fileText();
 }
 
+TEST_F(Dialogs, EnterPressesTheButtonOfItsField) {
+    openText(ball);
+    fill("style.name", "Mine");
+    EXPECT_NE(text().find("style Mine for Ball {"), std::string::npos);
+    fill("rule.new", "Ball -> cube");
+    EXPECT_NE(text().find("rule Ball -> cube"), std::string::npos);
+    EXPECT_EQ(text().find("rule Ball -> cube"), text().rfind("rule Ball -> cube")) << "once";
+}
+
+TEST_F(Dialogs, WhatIsRefusedStaysInItsField) {
+    openText(ball);
+    click("rule.4.sphere");
+    fill("edit.solid", "sphere(");
+    EXPECT_EQ(text(), ball);
+    EXPECT_TRUE(has("refused")) << "the reason stands below";
+    shoot("refused");
+    click("edit.solid", 0.9);
+    key("End");
+    key("BackSpace");
+    key("Return");
+    EXPECT_FALSE(has("refused"));
+    EXPECT_EQ(text(), ball) << "the text that was there";
+    click("edit.solid", 0.9);
+    key("End");
+    type("(");
+    key("ctrl+s");
+    EXPECT_NE(std::string(state()["notice"]).find("refused"), std::string::npos) << state()["notice"];
+    click("edit.solid", 0.9);
+    key("ctrl+a");
+    type("torus");
+    key("Return");
+    EXPECT_NE(text().find("-> torus size"), std::string::npos) << text();
+    EXPECT_FALSE(has("refused"));
+    fill("edit.solid", "(");
+    EXPECT_TRUE(has("refused"));
+    key("Escape");
+    EXPECT_FALSE(has("refused"));
+    click("edit.solid", 0.9);
+    key("ctrl+s");
+    EXPECT_NE(text().find("-> torus size"), std::string::npos) << "Esc gave it up";
+}
+
 }  // namespace
 }  // namespace sgm::window::test

@@ -227,8 +227,7 @@ TEST_F(Window, RulesAreChangedByClicks) {
     click("element.delete");
     EXPECT_FALSE(std::string(state()["notice"]).empty());
     while (state()["undo"] != "") key("ctrl+z");
-    fill("rule.new", "Cap -> sphere");
-    click("rule.add");
+    fill("rule.new", "Cap -> sphere");  // Enter presses the button
     EXPECT_NE(text().find("rule Cap -> sphere\n"), std::string::npos);
     click("rule.9.R1: Ball");  // the new one stands before it
     click("rule.delete");
@@ -268,7 +267,8 @@ TEST_F(Window, ParametersLocksStylesAndKeys) {
     click("reroll");
     EXPECT_EQ(lineOf(text(), 3), lineOf(pair, 3)) << "locked";
     EXPECT_EQ(state()["seed"], 2);
-    fill("style.name", "Mine");
+    click("style.name");
+    type("Mine");
     click("style.save");
     EXPECT_NE(text().find("style Mine for Pair {"), std::string::npos);
     shoot("style");
@@ -298,7 +298,6 @@ TEST_F(Window, ADerivationByHandIsKept) {
     until("the ball", [](const auto& s) { return s["shapes"] > 2; });
     click("step.rest");
     fill("step.name", "mine");
-    click("step.save");
     EXPECT_NE(text().find("derive mine: R0 => R1 => R2"), std::string::npos) << text();
     shoot("way");
     click("step.end");

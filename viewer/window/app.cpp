@@ -1,10 +1,8 @@
 #include "viewer/window/app.h"
 #include "viewer/window/pictures.h"
 
-#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_internal.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -40,11 +38,7 @@ private:
     void left(ImVec2 low, ImVec2 size, FrameTimeline& timeline);
     void right(ImVec2 low, ImVec2 size, FrameTimeline& timeline);
     void view(ImVec2 low, ImVec2 size, FrameTimeline& timeline);
-    /// A command of the keyboard that is about the document ends a field that takes keys, which writes what was typed
-    /// there into the text. Call before the fields. True where it did.
-    bool leaveField();
-    /// Keys for all of the window.
-    void keys(bool leftField);
+    void keys();  // for all of the window
     void splitter(const char* name, float x, float y, float height, float width, std::optional<float>& chosen,
                   float sign);
 
@@ -138,27 +132,16 @@ void Workspace::view(ImVec2 low, ImVec2 size, FrameTimeline& timeline) {
     timeline.was("panel View", drawn() - before);
 }
 
-bool Workspace::leaveField() {
-    const auto pressed = [](int key) { return ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(key, false); };
-    const bool inField = ImGui::GetIO().WantTextInput && !bench_.panels.typing && !ImGui::GetTopMostPopupModal();
-    if (!inField || (!pressed(GLFW_KEY_S) && !pressed(GLFW_KEY_O))) return false;
-    ImGui::ClearActiveID();
-    return true;
-}
-
-void Workspace::keys(bool leftField) {
-    if (ImGui::GetTopMostPopupModal()) return;  // a dialog takes all keys
-    if (ImGui::GetIO().WantTextInput && !bench_.panels.typing && !leftField) return;
+void Workspace::keys() {
+    if (!bars_.takesKeys(bench_)) return;
     bars_.keys(bench_);
-    const bool listOpen = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
-    if (listOpen && ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) ImGui::ClosePopupToLevel(0, true);
-    if (listOpen || bench_.panels.typing) return;
+    if (bench_.panels.typing || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
     parameters_.keys(bench_);
     viewKeys(bench_);
 }
 
 void Workspace::show(FrameTimeline& timeline) {
-    const bool leftField = leaveField();
+    bars_.leaveField(bench_);
     const ImGuiIO& io = ImGui::GetIO();
     const float leftWidth = left_.value_or(std::clamp(io.DisplaySize.x * 0.23f, 280.0f, 430.0f)),
                 rightWidth = right_.value_or(std::clamp(io.DisplaySize.x * 0.31f, 340.0f, 560.0f));
@@ -184,7 +167,7 @@ void Workspace::show(FrameTimeline& timeline) {
     splitter("##right", io.DisplaySize.x - rightWidth, bar, height, rightWidth, right_, -1);
     ImGui::PopStyleVar();
     timeline.was("panel Problems");
-    keys(leftField);
+    keys();
     timeline.was("keys");
     bars_.dialogs(bench_);
     timeline.was("dialogs");

@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <array>
 
@@ -189,23 +190,45 @@ void Bars::status(Workbench& bench) {
     hint(stages.empty() ? nullptr : stages.c_str());
 }
 
+void Bars::leaveField(const Workbench& bench) {
+    const auto pressed = [](int key) { return ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(key, false); };
+    leftField_ = ImGui::GetIO().WantTextInput && !bench.panels.typing && !ImGui::GetTopMostPopupModal() &&
+                 (pressed(GLFW_KEY_S) || pressed(GLFW_KEY_O));
+    if (leftField_) ImGui::ClearActiveID();
+}
+
+bool Bars::takesKeys(const Workbench& bench) const {
+    if (ImGui::GetTopMostPopupModal()) return false;
+    return !ImGui::GetIO().WantTextInput || bench.panels.typing || leftField_;
+}
+
+void Bars::save(Workbench& bench) {
+    const Panels& panels = bench.panels;
+    const std::string refused = leftField_ && panels.noticeIsProblem ? panels.notice : "";
+    bench.save();
+    if (!refused.empty() && !panels.noticeIsProblem)
+        bench.say(fmt::format("{}, without what was refused: {}", panels.notice, refused), true);
+}
+
 void Bars::keys(Workbench& bench) {
     const ImGuiIO& io = ImGui::GetIO();
     const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+    const bool listOpen = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
     if (pressed(GLFW_KEY_ESCAPE)) {
+        if (listOpen) ImGui::ClosePopupToLevel(0, true);
         help_ = false;
         bench.pictures.turntable.reset();
         // A user who drags a slider can't click Cancel.
         if (bench.document.dragging() && bench.busy()) bench.cancel();
     }
     if (io.KeyCtrl) {
-        if (pressed(GLFW_KEY_S)) io.KeyShift ? void(bench.panels.naming = Naming{}) : bench.save();
+        if (pressed(GLFW_KEY_S)) io.KeyShift ? void(bench.panels.naming = Naming{}) : save(bench);
         if (pressed(GLFW_KEY_O)) dialogs_.open();
         if (ImGui::IsKeyPressed(GLFW_KEY_Z)) io.KeyShift ? bench.redo() : bench.undo();
         if (ImGui::IsKeyPressed(GLFW_KEY_Y)) bench.redo();
         return;
     }
-    if (bench.panels.typing || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
+    if (bench.panels.typing || listOpen) return;
     const auto free = [&](int key) {
         return pressed(key) && bench.panels.hotkeys.find(static_cast<char>(std::tolower(key))) == std::string::npos;
     };

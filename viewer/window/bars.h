@@ -13,7 +13,12 @@ public:
     /// Height of what `top` shows, pixels: two lines where the window is too narrow for one.
     float height() const;
     void status(Workbench& bench);
-    /// Open, save, undo, help, pictures. Call once a frame, when no text takes keys.
+    /// A command about the document ends the field that takes keys, so that what was typed there counts. Call at the
+    /// start of a frame, before the fields.
+    void leaveField(const Workbench& bench);
+    /// Whether keys mean commands: no dialog and no field takes them, or `leaveField` has just ended one.
+    bool takesKeys(const Workbench& bench) const;
+    /// Open, save, undo, help, pictures. Call once a frame where `takesKeys`.
     void keys(Workbench& bench);
     /// What stands over the window: the cheat sheet, a file to open, a question. Call once a frame, outside windows.
     void dialogs(Workbench& bench);
@@ -21,10 +26,12 @@ public:
 private:
     void lookControls(Workbench& bench);
     void meshControls(Workbench& bench);
+    void save(Workbench& bench);
     void cheatSheet(Workbench& bench);
 
     bool help_ = false;
-    bool wrapped_ = false;  ///< the mesh's controls have a line of their own
+    bool leftField_ = false;  ///< in this frame
+    bool wrapped_ = false;    ///< the mesh's controls have a line of their own
     Dialogs dialogs_;
 };
 

@@ -96,6 +96,12 @@ private:
     };
     std::optional<Drop> drop_;
     std::string holding_, held_;  ///< the field that takes keys, and its text
+    /// What was typed in a field of the row `at` and makes no sense there: it stays until it does, or until `Esc`.
+    struct Refused {
+        std::optional<uint32_t> at;
+        std::string field, text, why;
+    };
+    std::optional<Refused> refused_;
     std::string newRule_ = "Name -> sphere";
 };
 

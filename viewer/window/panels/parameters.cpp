@@ -265,9 +265,11 @@ void ParametersPanel::styles(Workbench& bench) {
     const float button = ImGui::CalcTextSize("Save style").x + 2 * ImGui::GetStyle().FramePadding.x;
     field(bench.report, "style.name", styleName_, "Name of a style",
           ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x);
+    const bool done = entered() && !styleName_.empty();
     ImGui::SameLine();
     if (!widgets::button(bench.report, "style.save", "Save style", "Write a `style` with all values into the text",
-                         !styleName_.empty()))
+                         !styleName_.empty()) &&
+        !done)
         return;
     std::vector<document::edits::NamedValue> values;
     for (const document::ParamRow& r : rows_) values.push_back({r.name, valueText(r)});

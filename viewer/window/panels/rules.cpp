@@ -1,3 +1,4 @@
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -123,10 +124,12 @@ void RulesPanel::newRule(Workbench& bench, size_t selected) {
     const float width = ImGui::CalcTextSize("Add rule").x + 2 * ImGui::GetStyle().FramePadding.x;
     field(bench.report, "rule.new", newRule_, "Name -> body",
           ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
-    ImGui::SameLine();
     const size_t arrow = newRule_.find("->");
+    const bool done = entered() && arrow != std::string::npos;
+    ImGui::SameLine();
     if (button(bench.report, "rule.add", "Add rule", "A new rule, behind the selected one or the last of its shape",
-               arrow != std::string::npos)) {
+               arrow != std::string::npos) ||
+        done) {
         std::string symbol = newRule_.substr(0, arrow);
         while (!symbol.empty() && symbol.back() == ' ') symbol.pop_back();
         const syntax::RuleDecl* after = selected < rows_.size() ? rows_[selected].rule : nullptr;
@@ -182,17 +185,35 @@ void RulesPanel::part(Workbench& bench, const char* name, const std::string& val
     float left = 0;
     label(name, left);
     const std::string id = std::string("edit.") + name;
-    std::string text = holding_ == id ? held_ : value;
+    if (refused_ && (refused_->at != at_ || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false))) refused_.reset();
+    const bool wasRefused = refused_ && refused_->field == id;
+    std::string text = holding_ == id ? held_ : wasRefused ? refused_->text : value;
+    ImGui::BeginGroup();
     ImGui::PushFont(codeFont());
     const bool done = field(bench.report, id, text);
     ImGui::PopFont();
+    const bool escaped = ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
     if (ImGui::IsItemActive()) {
         holding_ = id;
         held_ = text;
     } else if (holding_ == id) {
         holding_.clear();
     }
-    if (done && text != value) bench.edit(commit(text), fmt::format("Change {}", name));
+    if (done && !escaped) {
+        if (wasRefused) refused_.reset();
+        if (text != value) {
+            const document::edits::Edit edit = commit(text);
+            if (!edit) refused_ = Refused{at_, id, text, edit.error().message};
+            bench.edit(edit, fmt::format("Change {}", name));
+        }
+    }
+    if (refused_ && refused_->field == id) {
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(tint::error), "%s", refused_->why.c_str());
+        ImGui::PopTextWrapPos();
+        bench.report.mark("refused");
+    }
+    ImGui::EndGroup();
 }
 
 void RulesPanel::inspector(Workbench& bench, const document::RuleRow& row) {

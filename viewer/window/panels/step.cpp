@@ -103,9 +103,9 @@ void StepPanel::save(Workbench& bench, const document::StepView& view) {
     const float width = ImGui::CalcTextSize("Save way").x + 2 * ImGui::GetStyle().FramePadding.x;
     field(bench.report, "step.name", way_, "Name of the way",
           ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
+    const bool possible = way.ok() && !bench.steps.running(), done = entered() && possible;
     ImGui::SameLine();
-    if (button(bench.report, "step.save", "Save way", "Write it into the text as a `derive` line",
-               way.ok() && !bench.steps.running()))
+    if (button(bench.report, "step.save", "Save way", "Write it into the text as a `derive` line", possible) || done)
         bench.steps.save(bench.document.ast(), way_);
 }
 
