@@ -71,6 +71,41 @@ TEST_F(Plans, FacesAreTold) {
     EXPECT_EQ(state()["face"], "");
 }
 
+TEST_F(Plans, WhatIsToldFollowsThePointer) {
+    size = "1000x700";
+    openText("grammar 1\nstart A -> cube size (4, 2, 2) + sphere at +x\n");
+    const auto told = [&](const std::string& shape) {
+        return until("the word on " + shape, [&](const auto& s) {
+            return std::string(s["hover"]).find(shape) != std::string::npos || (shape.empty() && s["hover"] == "");
+        });
+    };
+    key("1");
+    drawn();
+    point("view.field", .3, .5);
+    told("cube");
+    // The camera moves under a pointer that rests.
+    key("2");
+    drawn();
+    told("sphere");
+    key("5");
+    point("view.field", .4, .5);
+    told("cube");
+    wheel("view.field", -8);  // the label of a small face stands beside the shape
+    click("view.field", .4, .5);
+    shoot("label");
+    pointAway(1200, 750);
+    told("");
+    settled();
+    shoot("outside");
+    point("view.field", .4, .5);
+    told("cube");
+    click("pane.Split");
+    point("view.field", .4, .5);
+    told("cube");
+    point("tab.Rules");
+    told("");
+}
+
 TEST_F(Plans, LettersOfAnLsystem) {
     openText(
         "grammar 2\nlsystem Plan passes 2 angle 90deg step 2m\n  axiom \"F+F+F+F\"\n  F -> \"F-F+FK\"\n"

@@ -135,7 +135,7 @@ void SimulatedUser::openText(const std::string& text, const std::string& name) {
 
 void SimulatedUser::start() {
     fs::remove(folder / "report.json");
-    program_ = spawn({SGM_VIEWER, file.string(), "--report", (folder / "report.json").string()}, [&] {
+    program_ = spawn({SGM_VIEWER, file.string(), "--size", size, "--report", (folder / "report.json").string()}, [&] {
         setenv("DISPLAY", display_.c_str(), 1);
         setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
         setenv("XDG_STATE_HOME", (folder / "state").c_str(), 1);

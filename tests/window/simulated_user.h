@@ -82,6 +82,9 @@ protected:
     /// The program's resident memory in bytes.
     size_t residentBytes() const;
     std::filesystem::path folder, file;
+    /// Moves the pointer to a place of the screen, outside the window too; waits for nothing.
+    void pointAway(int x, int y) { tool({"mousemove", std::to_string(x), std::to_string(y)}); }
+    std::string size = "1280x800";  ///< of the window, pixels; all of the screen
 
 private:
     /// Sends input, and waits until the program has taken it and its widgets have come to rest.

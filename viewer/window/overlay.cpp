@@ -1,5 +1,8 @@
 #include "viewer/window/overlay.h"
 
+#include <algorithm>
+#include <array>
+#include <cfloat>
 #include <cmath>
 
 #include "grammar/derive/lift.h"
@@ -9,6 +12,25 @@ namespace sgm::window {
 namespace {
 
 constexpr size_t mostMarks = 4000;  // more would only be a cloud of dots
+
+/// What holds places of the screen.
+struct ScreenBox {
+    ImVec2 low{FLT_MAX, FLT_MAX}, high{-FLT_MAX, -FLT_MAX};
+    void add(ImVec2 at) {
+        low = {std::min(low.x, at.x), std::min(low.y, at.y)};
+        high = {std::max(high.x, at.x), std::max(high.y, at.y)};
+    }
+};
+
+/// Of a shape's scope; bit 0 of the index is high x, bit 1 y, bit 2 z.
+std::array<std::optional<ImVec2>, 8> cornersOf(const Workbench& bench, derive::ShapeId shape,
+                                               const Projection& project) {
+    const derive::Scope scope = derive::liftedScope(bench.shown()->model.derivation, shape);
+    std::array<std::optional<ImVec2>, 8> corners;
+    for (size_t i = 0; i < 8; ++i)
+        corners[i] = project(scope.point({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0}));
+    return corners;
+}
 
 }  // namespace
 
@@ -87,31 +109,39 @@ void drawBonds(const Workbench& bench, const Projection& project, ImDrawList& li
 }
 
 void drawScope(const Workbench& bench, derive::ShapeId shape, const Projection& project, ImDrawList& list) {
-    const derive::Scope scope = derive::liftedScope(bench.shown()->model.derivation, shape);
     const bool terminal = document::isTerminal(bench.shown()->model.derivation, shape);
-    std::optional<ImVec2> corners[8];
-    for (int i = 0; i < 8; ++i)
-        corners[i] = project(scope.point({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0}));
-    for (int i = 0; i < 8; ++i)
-        for (const int bit : {1, 2, 4}) {
+    const auto corners = cornersOf(bench, shape, project);
+    for (size_t i = 0; i < 8; ++i)
+        for (const size_t bit : {1u, 2u, 4u}) {
             if (i & bit || !corners[i] || !corners[i | bit]) continue;
             list.AddLine(*corners[i], *corners[i | bit], IM_COL32(8, 10, 14, 150), 3.5f);
             list.AddLine(*corners[i], *corners[i | bit], terminal ? tint::terminal : tint::nonTerminal, 1.6f);
         }
 }
 
-void drawFace(const derive::NamedFace& face, const Projection& project, ImDrawList& list) {
-    ImVec2 corners[4], middle(0, 0);
+void drawFace(const Workbench& bench, const Projection& project, ImDrawList& list, bool told) {
+    if (!bench.view.face) return;
+    ImVec2 corners[4];
+    ScreenBox face, shape;
     for (size_t i = 0; i < 4; ++i) {
-        const auto at = project(face.corners[i]);
+        const auto at = project(bench.view.face->corners[i]);
         if (!at) return;
-        corners[i] = *at;
-        middle = {middle.x + at->x / 4, middle.y + at->y / 4};
+        face.add(corners[i] = *at);
     }
     list.AddConvexPolyFilled(corners, 4, (tint::selected & 0x00ffffff) | 0x40000000);
     list.AddPolyline(corners, 4, tint::selected, ImDrawFlags_Closed, 2);
-    const std::string label = document::labelOf(face);
-    const ImVec2 size = ImGui::CalcTextSize(label.c_str()), low(middle.x - size.x / 2, middle.y - size.y / 2);
+    if (!told) return;
+    const std::string label = document::labelOf(*bench.view.face);
+    const ImVec2 size = ImGui::CalcTextSize(label.c_str());
+    ImVec2 low((face.low.x + face.high.x - size.x) / 2, (face.low.y + face.high.y - size.y) / 2);
+    const bool hasRoom = face.high.x - face.low.x > size.x * 1.5f && face.high.y - face.low.y > size.y * 3;
+    if (!hasRoom && bench.tree() && bench.selected() != derive::none) {
+        for (const auto& corner : cornersOf(bench, bench.selected(), project))
+            if (corner) shape.add(*corner);
+        low.y = shape.low.y - size.y - 8;
+        // At the picture's edge it gives way to the other side.
+        if (low.y < project.low.y + 4) low.y = std::min(shape.high.y + 8, project.low.y + project.size.y - size.y - 4);
+    }
     list.AddRectFilled({low.x - 5, low.y - 2}, {low.x + size.x + 5, low.y + size.y + 2}, IM_COL32(10, 12, 16, 190), 3);
     list.AddText(low, tint::text, label.c_str());
 }

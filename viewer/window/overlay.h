@@ -40,8 +40,8 @@ void drawJoints(const std::vector<ScreenJoint>& joints, ImDrawList& list);
 void drawBonds(const Workbench& bench, const Projection& project, ImDrawList& list);
 /// The edges of a shape's scope: red for a terminal, blue for a non-terminal, as in SG-M's figure 1.
 void drawScope(const Workbench& bench, derive::ShapeId shape, const Projection& project, ImDrawList& list);
-/// The selected face with its words.
-void drawFace(const derive::NamedFace& face, const Projection& project, ImDrawList& list);
+/// The selected face, and where `told` its words: on it where it has room for them, or else above the shape.
+void drawFace(const Workbench& bench, const Projection& project, ImDrawList& list, bool told);
 /// x, y and z in a corner.
 void drawAxes(const Projection& project, ImDrawList& list);
 

@@ -117,8 +117,26 @@ void showMesh(Workbench& bench, ImVec2 low, ImVec2 size) {
     list.AddText(ImVec2(low.x + (size.x - half.x) / 2, low.y + (size.y - half.y) / 2), tint::faint, text);
 }
 
-/// One picture with its input and overlays; `name` is what the report calls it.
-void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMesh) {
+/// Keeps what is told of the place under the pointer true: it is looked up anew once the camera rests.
+void followPointer(Workbench& bench, ImVec2 low) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool moving = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
+    if (bench.view.orbit != bench.view.seenFrom)
+        bench.view.hover.reset();
+    else if (!ImGui::IsAnyMouseDown() && (moving || !bench.view.hover))
+        bench.view.hover = hoverAt(bench, low, io.MousePos);
+}
+
+void tellHover(const Hover& hover) {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10, 6));
+    ImGui::BeginTooltip();
+    ImGui::TextUnformatted(hover.text.c_str());
+    ImGui::EndTooltip();
+    ImGui::PopStyleVar();
+}
+
+/// One picture with its input and overlays; `name` is what the report calls it. True while the pointer is over it.
+bool view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMesh) {
     ImGui::SetCursorScreenPos(low);
     ImGui::InvisibleButton(
         name, size,
@@ -133,7 +151,7 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
     isMesh ? showMesh(bench, low, size) : showField(bench, low, size);
     const Projection project(bench.view.orbit.camera(size.x / size.y), low, size);
     if (bench.tree() && bench.selected() != derive::none) drawScope(bench, bench.selected(), project, list);
-    if (bench.view.face) drawFace(*bench.view.face, project, list);
+    drawFace(bench, project, list, hovered);
     bench.view.mapLayer.draw(bench, project, list);
     drawPlan(bench, project, list);
     drawBonds(bench, project, list);
@@ -141,12 +159,7 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
     takeShape(bench, project, list);
     const bool onHandle = bench.view.planHandles.use(bench, project, list, hovered);
     list.PopClipRect();
-    const bool moving = io.MouseDelta.x != 0 || io.MouseDelta.y != 0;
-    if (!hovered || ImGui::IsAnyMouseDown()) {
-        if (!hovered && bench.view.look.pane != Pane::Split) bench.view.hover.reset();
-    } else if (moving || !bench.view.hover) {
-        bench.view.hover = hoverAt(bench, low, io.MousePos);
-    }
+    if (hovered) followPointer(bench, low);
     const ImVec2 wandered = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
     const bool click = hovered && !onHandle && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
                        std::hypot(wandered.x, wandered.y) < clickSlack;
@@ -155,13 +168,8 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
         bench.select(bench.view.hover ? bench.view.hover->shape : derive::none);
         if (bench.view.hover) bench.view.face = bench.view.hover->face;
     }
-    if (hovered && !onHandle && bench.view.hover && !ImGui::IsAnyMouseDown()) {
-        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10, 6));
-        ImGui::BeginTooltip();
-        ImGui::TextUnformatted(bench.view.hover->text.c_str());
-        ImGui::EndTooltip();
-        ImGui::PopStyleVar();
-    }
+    if (hovered && !onHandle && bench.view.hover && !ImGui::IsAnyMouseDown()) tellHover(*bench.view.hover);
+    return hovered;
 }
 
 }  // namespace
@@ -169,16 +177,19 @@ void view(Workbench& bench, const char* name, ImVec2 low, ImVec2 size, bool isMe
 void viewport(Workbench& bench) {
     const ImVec2 low = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     const ImVec2 size(std::floor(std::max(room.x, 32.0f)), std::floor(std::max(room.y, 32.0f)));
+    bool hovered = false;
     if (bench.view.look.pane == Pane::Split) {
         const float half = std::floor((size.x - 2) / 2);
-        view(bench, "view.field", low, {half, size.y}, false);
-        view(bench, "view.mesh", {low.x + half + 2, low.y}, {half, size.y}, true);
+        hovered = view(bench, "view.field", low, {half, size.y}, false);
+        hovered |= view(bench, "view.mesh", {low.x + half + 2, low.y}, {half, size.y}, true);
     } else {
         const bool isMesh = bench.view.look.pane == Pane::Mesh;
         // Picking asks the field, so its look follows even where it isn't shown.
         if (isMesh) bench.view.field.setLook(optionsFor(bench, size));
-        view(bench, isMesh ? "view.mesh" : "view.field", low, size, isMesh);
+        hovered = view(bench, isMesh ? "view.mesh" : "view.field", low, size, isMesh);
     }
+    if (!hovered) bench.view.hover.reset();
+    bench.view.seenFrom = bench.view.orbit;
 }
 
 void viewKeys(Workbench& bench) {

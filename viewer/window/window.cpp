@@ -8,6 +8,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <utility>
 #include <vector>
 
@@ -44,7 +45,10 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
     window->window_ = made;
     glfwSetWindowUserPointer(made, window.get());
     // ImGui's callbacks, installed below, call these in turn.
-    glfwSetCursorEnterCallback(made, [](GLFWwindow* w, int) { self(w).stirred_ = true; });
+    glfwSetCursorEnterCallback(made, [](GLFWwindow* w, int entered) {
+        self(w).stirred_ = true;
+        self(w).outside_ = !entered;
+    });
     glfwSetWindowFocusCallback(made, [](GLFWwindow* w, int) { self(w).stirred_ = true; });
     glfwSetFramebufferSizeCallback(made, [](GLFWwindow* w, int, int) { self(w).stirred_ = true; });
     glfwSetWindowRefreshCallback(made, [](GLFWwindow* w) { self(w).stirred_ = true; });
@@ -180,8 +184,11 @@ void Window::giveHeld() {
     io.KeyShift = either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
     io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
     io.KeySuper = either(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
-    // ImGui's own look at the pointer says whether it is ours at all.
-    if (ImGui::IsMousePosValid(&io.MousePos))
+    // ImGui's own look at the pointer says whether it is ours at all, but not whether it has left a window with the
+    // keys. A drag goes on outside.
+    if (outside_ && given_.buttons == 0 && input_.empty())
+        io.MousePos = {-FLT_MAX, -FLT_MAX};
+    else if (ImGui::IsMousePosValid(&io.MousePos))
         io.MousePos = {static_cast<float>(given_.x), static_cast<float>(given_.y)};
     for (int i = 0; i < ImGuiMouseButton_COUNT; ++i) io.MouseDown[i] = given_.buttons >> i & 1;
 }

@@ -90,6 +90,7 @@ private:
     std::deque<Event> input_;  ///< not yet given
     InputCounters given_;
     bool stirred_ = true;
+    bool outside_ = false;  ///< the pointer has left the window
     std::vector<std::filesystem::path> dropped_;
 };
 

@@ -81,6 +81,7 @@ struct ModelView {
     PlanHandleControl planHandles;
     Look look;
     std::optional<Hover> hover;
+    Orbit seenFrom;                         ///< the camera of the last frame
     std::optional<derive::NamedFace> face;  ///< of the selected shape, where the click was
     bool framed = false;                    ///< the camera has been set for this file
 
