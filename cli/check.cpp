@@ -118,6 +118,7 @@ void addCheck(CLI::App& app, int& exitCode) {
         ->capture_default_str();
     addGridOptions(*command, request->grid);
     command->add_flag("--json", request->json, "Problems as JSON, for editors");
+    command->footer("Examples:\n  sgm check my.sgm\n  sgm check examples/*.sgm --json");
     command->callback([request, &exitCode] { exitCode = check(*request); });
 }
 

@@ -176,12 +176,14 @@ void addExamples(CLI::App& app, int& exitCode) {
     std::vector<std::string> kinds;
     for (const Template& t : templates) kinds.emplace_back(t.name);
     fresh->add_option("--template", *kind, "What it begins as")->check(oneOf(kinds))->capture_default_str();
+    fresh->footer(fmt::format("Examples:\n  sgm new my\n  sgm new my --template {}", templates[1].name));
     fresh->callback([name, kind, &exitCode] { exitCode = writeNew(*name, *kind); });
 
     CLI::App* list = app.add_subcommand("examples", "List the examples, or copy one with what it uses");
     auto example = std::make_shared<std::string>(), folder = std::make_shared<std::string>(".");
     list->add_option("NAME", *example, "The example to copy");
     list->add_option("--to", *folder, "Folder to copy it into")->capture_default_str();
+    list->footer("Examples:\n  sgm examples\n  sgm examples tower --to models");
     list->callback([example, folder, &exitCode] {
         exitCode = example->empty() ? listExamples() : copyExample(*example, *folder);
     });

@@ -53,6 +53,7 @@ void addFmt(CLI::App& app, int& exitCode) {
     auto upgrade = std::make_shared<bool>(false);
     command->add_flag("--upgrade", *upgrade, "Rewrite files of 'grammar 1' as 'grammar 2', and report what differs");
     command->add_flag("--check", *checkOnly, "Change nothing; exit with 1 where a file is not formatted");
+    command->footer("Examples:\n  sgm fmt my.sgm\n  sgm fmt --check *.sgm\n  sgm fmt --upgrade old.sgm");
     command->callback([files, checkOnly, upgrade, &exitCode] {
         for (const std::string& file : *files) exitCode = std::max(exitCode, formatOne(file, *checkOnly, *upgrade));
     });

@@ -270,6 +270,7 @@ int serve() {
 void addLsp(CLI::App& app, int& exitCode) {
     CLI::App* command =
         app.add_subcommand("lsp", "Serve editors: the Language Server Protocol on the standard streams");
+    command->footer("Example, for Neovim:\n  vim.lsp.start({ name = \"sgm\", cmd = { \"sgm\", \"lsp\" } })");
     command->callback([&exitCode] { exitCode = serve(); });
 }
 

@@ -54,6 +54,7 @@ void addParams(CLI::App& app, int& exitCode) {
     command->add_flag(
         "--panel", *panel,
         "As JSON for a panel in another program: parameters, starts, styles with their values, derive ways");
+    command->footer("Examples:\n  sgm params examples/tower.sgm\n  sgm params examples/tower.sgm --json");
     command->callback([file, json, panel, &exitCode] { exitCode = params(*file, *json, *panel); });
 }
 

@@ -58,7 +58,6 @@ int runProgram(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk
     CLI::App app{"sgm: grammars that grow implicit solids: caves, clouds, buildings"};
     app.require_subcommand(1);
-    app.footer(programExamples);
     app.set_version_flag("--version", SGM_VERSION);
     app.fallthrough();
     uint64_t memory_bytes = usualMemory_bytes();
@@ -70,6 +69,7 @@ int runProgram(int argc, char** argv) {
 #define SGM_ADD(Name) add##Name(app, exitCode);
     SGM_COMMANDS(SGM_ADD)
 #undef SGM_ADD
+    app.footer(programExamples);  // now: commands take over what stands there when they are added
     // Subcommands run in their callbacks, when all options are known.
     app.parse_complete_callback([&] {
         if (!app.got_subcommand("view")) limitMemory(memory_bytes);  // drivers map far more than they use

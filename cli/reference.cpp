@@ -189,6 +189,7 @@ void addReference(CLI::App& app, int& exitCode) {
     command->add_flag("--textmate", *textMate, "Print a TextMate grammar instead, for editors that highlight by one");
     auto treeSitter = std::make_shared<bool>(false);
     command->add_flag("--tree-sitter", *treeSitter, "Print a tree-sitter grammar instead, the input of its generator");
+    command->footer("Examples:\n  sgm reference > reference.md\n  sgm reference --textmate > sgm.tmLanguage.json");
     command->callback([textMate, treeSitter, &exitCode] {
         if (*textMate || *treeSitter) {
             fmt::print("{}", *textMate ? language::textMateGrammar() : language::treeSitterGrammar());

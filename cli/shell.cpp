@@ -222,11 +222,15 @@ void addShell(CLI::App& app, int& exitCode) {
         app.add_subcommand("completion", "Print the script that completes commands and options in a shell");
     auto shell = std::make_shared<std::string>();
     completion->add_option("SHELL", *shell, "bash, zsh or fish")->required()->check(oneOf({"bash", "zsh", "fish"}));
+    completion->footer(
+        "Examples:\n  source <(sgm completion bash)\n"
+        "  sgm completion fish > ~/.config/fish/completions/sgm.fish");
     completion->callback([&app, shell, &exitCode] {
         fmt::print("{}", *shell == "bash" ? bashScript(app) : *shell == "zsh" ? zshScript(app) : fishScript(app));
         exitCode = 0;
     });
     CLI::App* man = app.add_subcommand("man", "Print the manual page, for `man -l -`");
+    man->footer("Example:\n  sgm man | man -l -");
     man->callback([&app, &exitCode] {
         fmt::print("{}", manPage(app, SGM_VERSION));
         exitCode = 0;

@@ -21,6 +21,20 @@ double secondsOfChildren() {
     return seconds(use.ru_utime) + seconds(use.ru_stime);
 }
 
+TEST_F(Cli, HelpOfACommandEndsWithItsOwnExamples) {
+    for (const std::string command :
+         {"bake", "build", "check", "completion", "examples", "fmt", "lsp", "man", "merge", "mutate", "new", "params",
+          "reference", "render", "serve", "step", "tree", "view"}) {
+        const std::string help = sgm(command + " --help").out;
+        const size_t from = help.find("Example");
+        ASSERT_NE(from, std::string::npos) << command;
+        const std::string examples = help.substr(from);
+        EXPECT_EQ(examples.find("Exit codes"), std::string::npos) << command << " shows the program's";
+        const std::string called = command == "lsp" ? "\"lsp\"" : "sgm " + command;
+        EXPECT_NE(examples.find(called), std::string::npos) << command;
+    }
+}
+
 TEST_F(Cli, WrongUsageIsTwo) {
     EXPECT_EQ(sgm("").code, 2);
     EXPECT_EQ(sgm("build").code, 2);
