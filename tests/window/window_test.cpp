@@ -285,6 +285,14 @@ TEST_F(Window, AFastHandLosesNothing) {
     EXPECT_EQ(state()["redo"], "Set round");
     burst("param.round", {"ctrl+z", "ctrl+y"});
     EXPECT_EQ(lineOf(text(), 4), "param round = true \"Round\"   // a switch");
+    for (int i = 0; i < 5; ++i) {
+        poke("tab.Text");
+        until(
+            "the text", [&](const auto&) { return has("text"); }, 5);
+        poke("tab.Rules");
+        until(
+            "the rules", [&](const auto&) { return !has("text"); }, 5);
+    }
 }
 
 TEST_F(Window, ADerivationByHandIsKept) {

@@ -128,7 +128,7 @@ void Window::giveInput() {
     const auto isModifier = [](int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; };
     bool command = false;  // a key that stands for more than its letter
     bool button = false;   // of the mouse; its wheel holds nothing up, for it turns while the pointer moves
-    bool letters = false;
+    bool letters = false, moved = false;
     std::vector<int> turned;  // keys that went down or up
     /// False where the event must wait for the next frame.
     const auto give = [&](const Event& event) {
@@ -142,9 +142,11 @@ void Window::giveInput() {
             case Kind::Move:
                 given_.x = event.x;
                 given_.y = event.y;
+                moved = true;
                 return true;
             case Kind::Button:
-                if (letters || !turned.empty()) return false;
+                // A tab takes a click only where the pointer was over it in the frame before.
+                if (letters || !turned.empty() || (event.down && moved)) return false;
                 given_.buttons = event.down ? given_.buttons | 1u << event.code : given_.buttons & ~(1u << event.code);
                 button = true;
                 return true;
