@@ -200,5 +200,25 @@ TEST_F(Dialogs, WhatIsRefusedStaysInItsField) {
     EXPECT_NE(text().find("-> torus size"), std::string::npos) << "Esc gave it up";
 }
 
+TEST_F(Dialogs, ExportAsksBeforeItReplacesAFile) {
+    openText(ball);
+    std::ofstream(folder / "test.ply") << "precious";
+    click("tab.Export");
+    drag("export.cells", 0.5, 0.5, 0.05, 0.5);
+    fill("export.file", (folder / "test.ply").string());
+    click("export.export");
+    until("a question", [](const auto& s) { return s["question"] != ""; });
+    click("answer.Cancel");
+    EXPECT_EQ(contentOf(folder / "test.ply"), "precious");
+    click("export.export");
+    click("answer.Replace");
+    const auto wrote = [](const auto& s) { return std::string(s["notice"]).starts_with("Wrote ") && !s["busy"]; };
+    until("the mesh", wrote);
+    EXPECT_NE(contentOf(folder / "test.ply"), "precious");
+    click("export.export");
+    until("the mesh again, without a question", wrote);
+    EXPECT_EQ(state()["question"], "");
+}
+
 }  // namespace
 }  // namespace sgm::window::test

@@ -28,6 +28,23 @@ void gap() {
     ImGui::SameLine(0, 15);
 }
 
+/// What the shown model is, and the times of its stages, a line each; both empty where there is none.
+std::pair<std::string, std::string> factsOf(const Workbench& bench) {
+    if (!bench.shown()) return {};
+    std::string stages;
+    double seconds = bench.status.fieldTimes.prepare;
+    for (const auto& [stage, took] : bench.shown()->stages) {
+        seconds += took;
+        stages += fmt::format("{}  {:.1f} ms\n", stage, took * 1000);
+    }
+    stages += fmt::format("cells for the rays  {:.1f} ms", bench.status.fieldTimes.prepare * 1000);
+    std::string facts = fmt::format("{} shapes  ·  {} steps  ·  made in {:.0f} ms", bench.tree()->shapes.size(),
+                                    bench.shown()->model.derivation.steps.size(), seconds * 1000);
+    if (bench.view.wantsMesh() && bench.view.mesh.hasMesh())
+        facts += fmt::format("  ·  {} triangles", bench.view.mesh.triangleCount());
+    return {std::move(facts), std::move(stages)};
+}
+
 }  // namespace
 
 void Bars::top(Workbench& bench) {
@@ -168,33 +185,27 @@ void Bars::status(Workbench& bench) {
     if (bench.exporting.running() && progress(bench.exporting.stage(), bench.exporting.fraction(), "export.cancel",
                                               "Stop the export; the file stays as it was"))
         bench.exporting.cancel();
+    const auto [facts, stages] = factsOf(bench);
+    const float from = right - ImGui::CalcTextSize(facts.c_str()).x - 12;
+    const std::string& notice =
+        bench.view.hover && !bench.panels.noticeIsProblem ? bench.view.hover->text : bench.panels.notice;
     ImGui::PushStyleColor(ImGuiCol_Text, bench.panels.noticeIsProblem ? tint::error : tint::faint);
-    ImGui::TextUnformatted(bench.view.hover && !bench.panels.noticeIsProblem ? bench.view.hover->text.c_str()
-                                                                             : bench.panels.notice.c_str());
+    const std::string seen = shortened(notice, from - ImGui::GetCursorPosX() - 12);
+    ImGui::TextUnformatted(seen.c_str());
     ImGui::PopStyleColor();
-    std::string facts, stages;
-    if (bench.shown()) {
-        double seconds = bench.status.fieldTimes.prepare;
-        for (const auto& [stage, took] : bench.shown()->stages) {
-            seconds += took;
-            stages += fmt::format("{}  {:.1f} ms\n", stage, took * 1000);
-        }
-        stages += fmt::format("cells for the rays  {:.1f} ms", bench.status.fieldTimes.prepare * 1000);
-        facts = fmt::format("{} shapes  ·  {} steps  ·  made in {:.0f} ms", bench.tree()->shapes.size(),
-                            bench.shown()->model.derivation.steps.size(), seconds * 1000);
-        if (bench.view.wantsMesh() && bench.view.mesh.hasMesh())
-            facts += fmt::format("  ·  {} triangles", bench.view.mesh.triangleCount());
-    }
-    ImGui::SameLine(right - ImGui::CalcTextSize(facts.c_str()).x - 12);
+    if (seen != notice) hint(notice.c_str());
+    ImGui::SameLine(from);
     faint(facts);
     hint(stages.empty() ? nullptr : stages.c_str());
 }
 
-void Bars::leaveField(const Workbench& bench) {
+void Bars::leaveField(Workbench& bench) {
     const auto pressed = [](int key) { return ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(key, false); };
     leftField_ = ImGui::GetIO().WantTextInput && !bench.panels.typing && !ImGui::GetTopMostPopupModal() &&
                  (pressed(GLFW_KEY_S) || pressed(GLFW_KEY_O));
-    if (leftField_) ImGui::ClearActiveID();
+    if (!leftField_) return;
+    ImGui::ClearActiveID();
+    bench.say("");  // what is said from here on is about the field
 }
 
 bool Bars::takesKeys(const Workbench& bench) const {

@@ -15,7 +15,7 @@ public:
     void status(Workbench& bench);
     /// A command about the document ends the field that takes keys, so that what was typed there counts. Call at the
     /// start of a frame, before the fields.
-    void leaveField(const Workbench& bench);
+    void leaveField(Workbench& bench);
     /// Whether keys mean commands: no dialog and no field takes them, or `leaveField` has just ended one.
     bool takesKeys(const Workbench& bench) const;
     /// Open, save, undo, help, pictures. Call once a frame where `takesKeys`.

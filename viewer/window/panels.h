@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -161,6 +162,8 @@ private:
     void chooseFormat(Workbench& bench);
     void chooseMesh(Workbench& bench);
     void option(Workbench& bench, document::ExportRow& row);
+    /// Asks first where a file is there that this window hasn't written.
+    void start(Workbench& bench, document::ExportRequest request);
 
     size_t format_ = 0;  // row of the table
     int resolution_ = 192;
@@ -169,6 +172,7 @@ private:
     std::filesystem::path document_;  // that `file_` was named after
     std::vector<document::ExportRow> options_;
     std::string file_;
+    std::set<std::filesystem::path> written_;
 };
 
 /// What is wrong, a row each; a click shows the place.

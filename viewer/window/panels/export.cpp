@@ -104,8 +104,25 @@ void ExportPanel::show(Workbench& bench) {
         request.keep = static_cast<mesh::Keep>(keep_);
         request.objects = objects_;
         for (const document::ExportRow& row : options_) request.options[row.name] = row.value;
-        bench.exportTo(std::move(request));
+        start(bench, std::move(request));
     }
+}
+
+void ExportPanel::start(Workbench& bench, document::ExportRequest request) {
+    const std::filesystem::path file = request.file;
+    std::error_code failed;
+    // What this window has written it may write again.
+    if (written_.contains(file) || !std::filesystem::exists(file, failed)) {
+        written_.insert(file);
+        return bench.exportTo(std::move(request));
+    }
+    bench.panels.question = Question{file.string() + " exists; replace it?",
+                                     {{"Replace",
+                                       [this, &bench, request = std::move(request)] {
+                                           written_.insert(request.file);
+                                           bench.exportTo(request);
+                                       }},
+                                      {"Cancel", {}}}};
 }
 
 }  // namespace sgm::window
