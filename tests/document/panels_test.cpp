@@ -34,8 +34,13 @@ TEST(RuleRows, ShowTheRuleTree) {
     text.clear();
     for (const RuleRow& row : ruleRows(split)) text += std::string(row.depth * 2, ' ') + row.text + "\n";
     EXPECT_EQ(text,
-              "start A\n  \n    split x\n      1m:\n        b\n      { }*\n        ~2m:\n          C\n            with "
-              "n = 3\n      ~1:\n        choose\n          2:\n            d\n          1:\n            nil\n");
+              "start A\n  split x\n    1m:\n      b\n    { }*\n      ~2m:\n        C\n          with "
+              "n = 3\n    ~1:\n      choose\n        2:\n          d\n        1:\n          nil\n")
+        << "what only divides has no empty row";
+    text.clear();
+    for (const RuleRow& row : ruleRows(parsed("grammar 2\nstart A -> cube + split y { ~1: b }, split x { ~1: c }\n")))
+        text += (row.first && row.sibling > 0 ? ", " : "") + row.text + "\n";
+    EXPECT_EQ(text, "start A\ncube\n+ …\nsplit y\n~1:\nb\n, split x\n~1:\nc\n");
 }
 
 TEST(ReportRows, SumWithTheirUnits) {

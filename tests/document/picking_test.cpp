@@ -19,6 +19,7 @@ protected:
     uint32_t at(std::string_view word) const { return static_cast<uint32_t>(document.text().find(word)); }
 
     Document document{pair};
+    std::vector<RuleRow> rows = ruleRows(*document.ast());
     std::shared_ptr<const BuiltModel> model = shown(document);
 };
 
@@ -28,8 +29,9 @@ TEST_F(Picking, OriginsLeadToShapesAndText) {
         const auto found = pick(*model, origin);
         ASSERT_TRUE(found);
         EXPECT_EQ(selected(tree(), found->path), found->shape);
-        const auto shapes = shapesAt(model->model.derivation, found->element.begin);
-        EXPECT_FALSE(shapes.empty());
+        const RuleRow row = rows[rowOf(rows, TextRange{found->element.begin, found->element.end})];
+        const auto shapes = shapesOf(model->model.derivation, row);
+        EXPECT_NE(std::find(shapes.begin(), shapes.end(), found->shape), shapes.end()) << found->path;
         picked +=
             found->symbol == "cone" && found->rule == "Arm#1" && found->element.text() == "+ cone size 1 at +y to -y";
     }
@@ -43,14 +45,14 @@ TEST_F(Picking, OriginsLeadToShapesAndText) {
 TEST_F(Picking, TextLeadsToShapes) {
     const auto labels = [&](uint32_t offset) {
         std::string list;
-        for (const auto s : shapesAt(model->model.derivation, offset))
+        for (const auto s : shapesOf(model->model.derivation, rows.at(rowAt(rows, offset))))
             list += tree().labels[tree().shapes[s].label] + " ";
         return list;
     };
     EXPECT_EQ(labels(at("cone size")), "cone ");
     EXPECT_EQ(labels(at("at -y")), "torus ");
     EXPECT_EQ(labels(at("rule Arm") + 1), "cone torus ") << "the head of a rule means all it made";
-    EXPECT_EQ(labels(0), "");
+    EXPECT_EQ(labels(at("start")), "A ") << "what grew on it by rules is theirs";
 }
 
 TEST_F(Picking, OriginsOfASubtree) {

@@ -52,6 +52,14 @@ void Document::setText(std::string text) {
     parseSeconds_ = watch.seconds();
 }
 
+/// Takes the selected node along.
+static void follow(Choice& choice, std::string_view text, const TextEdit& edit) {
+    if (!choice.node && edit.node) choice.node = SelectedNode{};
+    if (!choice.node) return;
+    const auto now = followed(choice.node->range, text, edit);
+    now ? void(choice.node->range = *now) : choice.node.reset();
+}
+
 void History::push(Entry entry) {
     entries_.resize(at_);
     entries_.push_back(std::move(entry));
@@ -63,19 +71,21 @@ Status Document::apply(const TextEdit& edit, std::string label) {
         return Error{Error::Kind::Input, fmt::format("'{}' was made for another text", label)};
     if (edit.empty() || std::string_view(text_).substr(edit.begin, edit.end - edit.begin) == edit.replacement)
         return Done{};
+    Choice before = choice_;
+    follow(choice_, text_, edit);
     if (drag_) {
         if (drag_->label.empty()) drag_->label = std::move(label);
     } else {
-        history_.push({edit, inverse(text_, edit), choice_, choice_, std::move(label)});
+        history_.push({edit, inverse(text_, edit), std::move(before), choice_, std::move(label)});
     }
     setText(applied(text_, edit));
     return Done{};
 }
 
 /// A keystroke joins the one before it when it goes on where that one ended, on the same line.
-bool Document::joins(const TextEdit& edit) {
-    if (drag_ || !history_.canUndo() || history_.canRedo() || !history_.last().typed) return false;
-    const TextEdit& last = history_.last().forward;
+static bool joins(History& history, const TextEdit& edit) {
+    if (!history.canUndo() || history.canRedo() || !history.last().typed) return false;
+    const TextEdit& last = history.last().forward;
     const bool typesOn = edit.begin == edit.end && edit.begin == last.begin + last.replacement.size() &&
                          !last.replacement.empty() && edit.replacement.find('\n') == std::string::npos;
     const bool erasesOn = edit.replacement.empty() && last.replacement.empty() && edit.end == last.begin;
@@ -85,11 +95,13 @@ bool Document::joins(const TextEdit& edit) {
 void Document::type(std::string text) {
     const TextEdit edit = difference(text_, text);
     if (edit.empty()) return;
-    if (joins(edit)) {
+    if (!drag_ && joins(history_, edit)) {
         History::Entry& last = history_.last();
+        follow(choice_, text_, edit);
         const std::string before = applied(text_, last.backward);
         last.forward = difference(before, text);
         last.backward = inverse(before, last.forward);
+        last.after = choice_;
         setText(std::move(text));
         return;
     }
@@ -100,6 +112,7 @@ void Document::type(std::string text) {
 void Document::choose(Choice choice, std::string label) {
     Choice same = choice;
     same.selection = choice_.selection;
+    same.node = choice_.node;
     if (same != choice_) {
         ++revision_;
         if (!drag_)
@@ -120,6 +133,7 @@ void Document::endDrag() {
     const TextEdit edit = difference(drag.text, text_);
     Choice same = drag.choice;
     same.selection = choice_.selection;
+    same.node = choice_.node;
     if (!edit.empty() || same != choice_)
         history_.push({edit, inverse(drag.text, edit), drag.choice, choice_, drag.label});
 }

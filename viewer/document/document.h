@@ -13,6 +13,7 @@
 
 #include "grammar/syntax/ast.h"
 #include "modeler/core/result.h"
+#include "viewer/document/rule_rows.h"
 #include "viewer/document/text_edit.h"
 
 namespace sgm::document {
@@ -23,8 +24,9 @@ struct Choice {
     std::string style;  ///< "" for none
     std::string way;    ///< of a `derive` line; "" derives automatically
     uint64_t seed = 1;
-    std::set<std::string> locked;  ///< parameters that a re-roll leaves alone
-    std::string selection;         ///< path of the selected shape in the tree, "Cave/Cell[3]"; "" for none
+    std::set<std::string> locked;           ///< parameters that a re-roll leaves alone
+    std::string selection;                  ///< path of the selected shape in the tree, "Cave/Cell[3]"; "" for none
+    std::optional<SelectedNode> node = {};  ///< what is selected in the text: edits take it along
     friend bool operator==(const Choice&, const Choice&) = default;
 };
 
@@ -95,6 +97,9 @@ public:
     void choose(Choice choice, std::string label);
     /// Selects a shape by its path; no undo entry.
     void select(std::string path) { choice_.selection = std::move(path); }
+    /// Selects a node of the present text; no undo entry. Every edit takes it along, or forgets it with what it takes
+    /// out.
+    void selectNode(std::optional<SelectedNode> node) { choice_.node = node; }
 
     /// Between these two all edits are one undo entry: a slider that is dragged. Calls don't nest; a drag that changes
     /// nothing leaves no entry.
@@ -136,7 +141,6 @@ private:
     };
     static std::optional<Stamp> stampOf(const std::filesystem::path& path);
     void setText(std::string text);
-    bool joins(const TextEdit& edit);
     Status write(const std::filesystem::path& path);
 
     std::filesystem::path path_;

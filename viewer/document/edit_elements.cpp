@@ -35,11 +35,11 @@ Error notHere() { return refused("this element is not part of the text any more"
 TextEdit putBehind(const Ast& ast, const Element& element, std::string text) {
     const std::string_view all = ast.source->text();
     const uint32_t end = element.span.end;
-    if (!beginsLine(all, element.span.begin)) return {end, end, " " + std::move(text)};
+    if (!beginsLine(all, element.span.begin)) return {end, end, " " + std::move(text), 1};
     const uint32_t begin = lineBegin(all, element.span.begin);
     const std::string indent(all.substr(begin, element.span.begin - begin));
     const uint32_t at = endsLine(all, end) ? lineEnd(all, end) : end;
-    return {at, at, "\n" + indent + std::move(text)};
+    return {at, at, "\n" + indent + std::move(text), static_cast<uint32_t>(indent.size() + 1)};
 }
 
 const Attribute* find(const Element& element, const syntax::Operation& operation) {
@@ -141,8 +141,9 @@ Edit moveElement(const Ast& ast, const Element& element, int by) {
     const std::string_view between = text.substr(first.span.end, second.span.begin - first.span.end);
     std::string swapped = withOperator(second, content ? Operator::None : second.op);
     swapped += between;
+    const uint32_t node = by < 0 ? 0 : static_cast<uint32_t>(swapped.size());
     swapped += withOperator(first, content ? Operator::Sum : first.op);
-    return tried(ast, {first.span.begin, second.span.end, std::move(swapped)});
+    return tried(ast, {first.span.begin, second.span.end, std::move(swapped), node});
 }
 
 Edit setOperator(const Ast& ast, const Element& element, Operator op) {

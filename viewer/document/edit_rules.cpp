@@ -43,9 +43,9 @@ TextEdit removalOf(std::string_view text, Lines lines) {
 
 /// Whole lines put in behind the line that ends at `end`.
 TextEdit insertion(std::string_view text, uint32_t end, std::string lines) {
-    if (end == text.size())
-        return {end, end, (text.empty() || text.back() == '\n' ? "" : "\n") + std::move(lines) + "\n"};
-    return {end + 1, end + 1, std::move(lines) + "\n"};
+    if (end < text.size()) return {end + 1, end + 1, std::move(lines) + "\n", 0};
+    const std::string gap = text.empty() || text.back() == '\n' ? "" : "\n";
+    return {end, end, gap + std::move(lines) + "\n", static_cast<uint32_t>(gap.size())};
 }
 
 /// Its place among the rules of the text.
@@ -94,7 +94,7 @@ Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, con
     const std::string_view text = ast.source->text();
     if (!after)
         for (const RuleDecl& rule : ast.rules)
-            if (rule.symbol.text == *name) after = &rule;
+            if (rule.symbol.text == added.symbol) after = &rule;
     if (!after && !ast.rules.empty()) after = &ast.rules.back();
     const uint32_t end = after ? linesOf(ast, *after).end : static_cast<uint32_t>(text.size());
     std::vector<ListedRule> rules = listed(ast);
@@ -129,10 +129,11 @@ Edit moveRule(const Ast& ast, const RuleDecl& rule, const RuleDecl* before) {
     TextEdit put;
     if (before) {
         const uint32_t at = linesWithComments(ast, *before).begin;
-        put = {at, at, std::move(moved) + "\n"};
+        put = {at, at, std::move(moved) + "\n", 0};
     } else {
         put = insertion(text, linesOf(ast, ast.rules.back()).end, std::move(moved));
     }
+    put.node = *put.node + rule.span.begin - lines.begin;  // behind its comments
     std::vector<ListedRule> rules = listed(ast);
     const ListedRule taken = rules[static_cast<size_t>(placeOf(ast, rule))];
     rules.insert(rules.begin() + (before ? placeOf(ast, *before) : static_cast<std::ptrdiff_t>(rules.size())),

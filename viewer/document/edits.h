@@ -73,6 +73,28 @@ Edit setExpression(const Ast& ast, const syntax::Expr& expression, std::string_v
 /// The body of a rule, a start, a case or a loop, whole.
 Edit setBody(const Ast& ast, const syntax::Body& body, std::string_view text);
 
+// --- Parts of a block: `label: body` of a split, faces or a choice, and { … }* ---
+// A bar stands between two: it comes and goes with them, in a line of its own or not as the others stand.
+
+using syntax::Case;
+
+/// `text`, a part as it is written ("~1: cube", "{ ~2m: Tile }*"), behind another of its block.
+Edit addPart(const Ast& ast, const Case& after, std::string_view text);
+/// The last one of a block can't go: delete what the block belongs to.
+Edit removePart(const Ast& ast, const Case& part);
+/// A copy right behind it.
+Edit duplicatePart(const Ast& ast, const Case& part);
+/// Exchanges it with the neighbour `by` places (−1 or 1) along in its block.
+Edit movePart(const Ast& ast, const Case& part, int by);
+/// What stands before its colon, a size or a word: "1.5m", "~1", "100% - 2m", "tag street".
+Edit setPartLabel(const Ast& ast, const Case& part, std::string_view label);
+/// How often { … } repeats: "*", "+", or a count, "3" or "(n + 1)".
+Edit setPartTimes(const Ast& ast, const Case& part, std::string_view times);
+/// The parts among which this one stands; null where it isn't one of the tree.
+const std::vector<Case>* partsAround(const Ast& ast, const Case& part);
+/// A part that fits the block of an attribute: "~1: cube" in a split, "1: cube" in a choice (null).
+std::string samplePart(const syntax::Attribute* attribute);
+
 // --- Values ---
 
 /// One parameter's value as written: "7", "1.2m", "(1, 2, 3)", "#c8b090".

@@ -54,25 +54,35 @@ ShapeId selected(const ShapeTree& tree, const std::string& path) {
     return path.empty() || tree.shapes.empty() ? none : tree.find(path);
 }
 
-std::vector<ShapeId> shapesAt(const Derivation& derivation, uint32_t offset) {
+namespace {
+
+/// The text whose shapes a row stands for.
+TextRange makerOf(const RuleRow& row) {
+    const bool divides = row.attribute && !row.attribute->cases.empty();
+    const syntax::SourceSpan span = row.kind == RuleRow::Kind::Attribute && !divides ? row.element->span
+                                    : row.kind == RuleRow::Kind::Part                ? row.rule->span
+                                                                                     : row.span;
+    return {span.begin, span.end};
+}
+
+}  // namespace
+
+std::vector<ShapeId> shapesOf(const Derivation& derivation, const RuleRow& row) {
     const ShapeTree& tree = derivation.tree;
     const syntax::Source* file = derivation.grammar->sources[0].get();
-    const auto holds = [&](syntax::SourceSpan span) {
-        return span.source == file && span.begin <= offset && offset < span.end;
-    };
-    const auto length = [](syntax::SourceSpan span) { return span.end - span.begin; };
-    syntax::SourceSpan least;
-    for (const derive::Shape& s : tree.shapes)
-        if (!s.dead && holds(s.span) && (!least.source || length(s.span) < length(least))) least = s.span;
-    std::vector<ShapeId> found;
+    const TextRange maker = makerOf(row);
+    std::vector<ShapeId> exact, within;
+    std::vector<bool> holds(tree.shapes.size(), false);  // it was made by this text
     for (ShapeId id = 0; id != none; id = tree.next(id)) {
         const derive::Shape& s = tree.shapes[id];
-        const bool made =
-            least.source ? s.span.source == file && s.span.begin == least.begin && s.span.end == least.end
-                         : s.madeBy != none && holds(derivation.grammar->rules[derivation.steps[s.madeBy].rule].span);
-        if (made) found.push_back(id);
+        const auto [begin, end] = TextRange{s.span.begin, s.span.end};
+        if (s.span.source != file || begin < maker.begin || end > maker.end) continue;
+        holds[id] = true;
+        if (begin == maker.begin && end == maker.end) exact.push_back(id);
+        const bool nested = s.parent != none && holds[s.parent] && tree.shapes[s.parent].madeBy == s.madeBy;
+        if (!nested) within.push_back(id);
     }
-    return found;
+    return exact.empty() ? within : exact;
 }
 
 std::vector<OriginId> originsOf(const BuiltModel& shown, ShapeId shape) {
@@ -134,7 +144,7 @@ edits::Edit attach(const Document& document, const BuiltModel& shown, ShapeId mo
     if (!samePlace(tree, stands, host))
         return edits::refused(fmt::format("'{}' grows on '{}': its rule can't join it to '{}'", tree.path(moved),
                                           tree.path(stands), tree.path(host)));
-    return edits::attach(*document.ast(), *element, tree.joint(host, joint).name);
+    return edits::attach(*document.ast(), **element, tree.joint(host, joint).name);
 }
 
 }  // namespace sgm::document

@@ -7,6 +7,7 @@
 
 #include "grammar/derive/faces.h"
 #include "viewer/document/edits.h"
+#include "viewer/document/rule_rows.h"
 #include "viewer/document/session.h"
 
 namespace sgm::document {
@@ -31,9 +32,9 @@ std::string labelOf(const derive::NamedFace& face);
 /// The shape that a selection means in this tree, or none.
 derive::ShapeId selected(const derive::ShapeTree& tree, const std::string& path);
 
-/// The shapes that the text at `offset` of the document made, in tree order: of the smallest element around it that
-/// made any; in a rule's head all that the rule made.
-std::vector<derive::ShapeId> shapesAt(const derive::Derivation& derivation, uint32_t offset);
+/// The shapes that a row's text made, in tree order: those of the element itself, or else the topmost of what stands in
+/// it; of an attribute those of its element, of a rule's part those of the rule. Costs one look at every shape.
+std::vector<derive::ShapeId> shapesOf(const derive::Derivation& derivation, const RuleRow& row);
 /// The origins under which the shape, or anything below it, owns surface: what to light up in the view.
 std::vector<OriginId> originsOf(const BuiltModel& shown, derive::ShapeId shape);
 

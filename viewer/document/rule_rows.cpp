@@ -57,6 +57,8 @@ std::string headOf(const Element& e) {
         text += "( )";
     else if (e.solid)
         text += oneLine(e.solid->span);
+    else if (!text.empty())
+        text += "…";
     if (!e.live.empty()) text += " : " + e.live.text;
     return text;
 }
@@ -116,14 +118,17 @@ private:
             for (const Element& e : b.siblings[s]) element(e, depth, s, &e == b.siblings[s].data());
     }
     void element(const Element& e, uint32_t depth, uint32_t sibling, bool first) {
-        RuleRow& row = add(Kind::Element, depth, e.span, headOf(e));
-        row.element = &e;
-        row.sibling = sibling;
-        row.first = first;
-        for (const syntax::Attribute& a : e.before) attribute(e, a, depth + 1);
-        if (e.body) body(*e.body, depth + 1);
-        cases(e.cases, depth + 1);
-        for (const syntax::Attribute& a : e.after) attribute(e, a, depth + 1);
+        const std::string head = headOf(e);
+        const size_t place = rows_.size();
+        const uint32_t below = depth + !head.empty();
+        if (!head.empty()) add(Kind::Element, depth, e.span, head).element = &e;
+        for (const syntax::Attribute& a : e.before) attribute(e, a, below);
+        if (e.body) body(*e.body, below);
+        cases(e.cases, below);
+        for (const syntax::Attribute& a : e.after) attribute(e, a, below);
+        if (place == rows_.size()) return;
+        rows_[place].sibling = sibling;
+        rows_[place].first = first;
     }
     void attribute(const Element& e, const syntax::Attribute& a, uint32_t depth) {
         RuleRow& row = add(Kind::Attribute, depth, a.span, headOf(a));
@@ -142,6 +147,7 @@ private:
                                       : c.tag.empty() ? oneLine(c.label) + ":"
                                                       : "tag " + c.tag.text + ":";
             RuleRow& row = add(Kind::Case, depth, c.span, label);
+            row.part = &c;
             if (c.label) row.expression = &*c.label;
             if (c.body) body(*c.body, depth + 1);
             cases(c.cases, depth + 1);
@@ -175,6 +181,28 @@ size_t rowAt(const std::vector<RuleRow>& rows, uint32_t offset) {
             found = i;
     }
     return found;
+}
+
+size_t rowOf(const std::vector<RuleRow>& rows, const SelectedNode& node) {
+    const uint32_t at = node.range.begin;
+    const bool outermost = node.range.begin == node.range.end;
+    size_t around = rows.size();
+    for (size_t i = 0; i < rows.size(); ++i) {
+        const SourceSpan span = rows[i].span;
+        if (span.begin == at && (outermost || rows[i].kind == node.kind)) return i;
+        if (rows[i].kind == node.kind && span.begin <= at && at < span.end) around = i;  // inner rows follow outer ones
+    }
+    return around;
+}
+
+size_t rowOf(const std::vector<RuleRow>& rows, TextRange range) {
+    size_t around = rows.size();
+    for (size_t i = 0; i < rows.size(); ++i) {
+        const SourceSpan span = rows[i].span;
+        if (span.begin == range.begin && span.end == range.end) return i;
+        if (span.begin <= range.begin && range.end <= span.end) around = i;
+    }
+    return around;
 }
 
 }  // namespace sgm::document

@@ -33,10 +33,26 @@ TextEdit merged(std::string_view text, std::vector<TextEdit> edits) {
     TextEdit all{edits.front().begin, edits.front().begin, {}};
     for (const TextEdit& edit : edits) {
         all.replacement += text.substr(all.end, edit.begin - all.end);
+        if (edit.node) all.node = static_cast<uint32_t>(all.replacement.size()) + *edit.node;
         all.replacement += edit.replacement;
         all.end = edit.end;
     }
     return all;
+}
+
+std::optional<TextRange> followed(TextRange node, std::string_view before, const TextEdit& edit) {
+    if (edit.node) return TextRange{edit.begin + *edit.node, edit.begin + *edit.node};
+    const auto grown = static_cast<uint32_t>(edit.replacement.size() - (edit.end - edit.begin));  // modulo 2^32
+    if (edit.end <= node.begin) return TextRange{node.begin + grown, node.end + grown};
+    if (edit.begin >= node.end && edit.begin > node.begin) return node;
+    if (edit.begin >= node.begin && edit.end <= node.end &&
+        !(edit.replacement.empty() && edit.end == node.end && edit.begin == node.begin))
+        return TextRange{node.begin, node.end + grown};
+    const std::string_view text = before.substr(node.begin, node.end - node.begin);
+    const size_t again = text.empty() ? std::string::npos : edit.replacement.find(text);
+    if (again == std::string::npos) return std::nullopt;
+    const uint32_t begin = edit.begin + static_cast<uint32_t>(again);
+    return TextRange{begin, begin + static_cast<uint32_t>(text.size())};
 }
 
 }  // namespace sgm::document

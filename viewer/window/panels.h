@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -81,29 +82,41 @@ private:
     void inspector(Workbench& bench, const document::RuleRow& row);
     void ruleInspector(Workbench& bench, const document::RuleRow& row);
     void elementInspector(Workbench& bench, const document::RuleRow& row);
+    void elementButtons(Workbench& bench, const syntax::Element& element);
     void attributes(Workbench& bench, const syntax::Element& element);
+    size_t selectedRow(Workbench& bench);
+    // In rule_parts.cpp:
+    void partInspector(Workbench& bench, const syntax::Case& part);
+    void partButtons(Workbench& bench, const syntax::Case& part);
+    void removePart(Workbench& bench, const syntax::Case& part);
+    /// An operation that divides the scope: what stands before its braces, and its parts.
+    void divisionInspector(Workbench& bench, const document::RuleRow& row);
+    void blockInspector(Workbench& bench, const std::vector<syntax::Case>& parts, const syntax::Attribute* attribute);
+    void addPart(Workbench& bench, const syntax::Case& after, const syntax::Attribute* attribute);
+    /// A field of `width` pixels, 0 for what is left; the edit is made when it is left, changed.
+    void partField(Workbench& bench, const std::string& id, const std::string& value, float width,
+                   const std::function<document::edits::Edit(const std::string&)>& commit, const char* label);
     /// A field for a part of the node; `commit` makes the edit when it is left.
     template <class Commit>
     void part(Workbench& bench, const char* name, const std::string& value, Commit commit);
 
     std::shared_ptr<const syntax::Ast> listed_;
     std::vector<document::RuleRow> rows_;
-    std::optional<uint32_t> at_;  ///< first byte of the selected row's node
-    document::RuleRow::Kind kind_ = document::RuleRow::Kind::Rule;
-    bool scroll_ = false;  ///< the selected row is to be seen
+    size_t selected_ = 0;  ///< row of what is selected; the number of rows for none
     /// Where a rule that is dragged would go.
     struct Drop {
         size_t rule, before;  ///< of the syntax tree
     };
     std::optional<Drop> drop_;
     std::string holding_, held_;  ///< the field that takes keys, and its text
-    /// What was typed in a field of the row `at` and makes no sense there: it stays until it does, or until `Esc`.
+    /// What was typed in a field of a row and makes no sense there: it stays until it does, or until `Esc`.
     struct Refused {
-        std::optional<uint32_t> at;
+        size_t row;
         std::string field, text, why;
     };
     std::optional<Refused> refused_;
     std::string newRule_ = "Name -> sphere";
+    std::string newPart_, samplePart_;  ///< the part to add, and what it was at first
 };
 
 /// The grammar itself, with its problems under their lines; a click selects the shapes that the place made.

@@ -19,14 +19,18 @@ void revealPlace(Workbench& bench, const document::Problem& problem) {
     bench.panels.showText = true;
 }
 
+void selectRow(Workbench& bench, const document::RuleRow& row) {
+    bench.view.face.reset();
+    bench.selection.selectRow(bench.document, bench.shown(), row);
+    if (const std::string notice = bench.selection.takeNotice(); !notice.empty()) bench.say(notice);
+}
+
 void selectText(Workbench& bench, uint32_t offset) {
-    if (!bench.shown() || !isCurrent(bench.document, *bench.shown())) return;
-    const std::vector<derive::ShapeId> made = document::shapesAt(bench.shown()->model.derivation, offset);
-    if (made.empty()) return;
-    const auto present = std::find(made.begin(), made.end(), bench.selected());
-    bench.select(present == made.end() || present + 1 == made.end() ? made.front() : present[1], true);
-    if (made.size() > 1)
-        bench.say(fmt::format("One of {} shapes that this text made; click again for the next", made.size()));
+    const auto rows = document::ruleRows(*bench.document.ast());
+    const size_t row = rowAt(rows, offset);
+    if (row == rows.size()) return;
+    selectRow(bench, rows[row]);
+    bench.panels.revealRow = true;
 }
 
 std::optional<Hover> hoverOf(const Workbench& bench, const Pick& pick) {

@@ -6,7 +6,9 @@
 
 namespace sgm::window {
 
-/// Selects what the text at this byte made; asked again for the same, the next of several.
+/// Selects a row of the document's rules and what it made; asked again for the same, the next of several.
+void selectRow(Workbench& bench, const document::RuleRow& row);
+/// The same for the smallest row that the text at this byte belongs to; nothing outside starts and rules.
 void selectText(Workbench& bench, uint32_t offset);
 /// Shows the line of the document that a problem is in.
 void revealPlace(Workbench& bench, const document::Problem& problem);

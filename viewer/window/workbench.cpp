@@ -26,7 +26,7 @@ Status Workbench::open(const std::filesystem::path& path) {
 void Workbench::show(document::Document other) {
     document = std::move(other);
     panels.naming.reset();  // it was about the document before
-    selected_ = derive::none;
+    selection = {};
     view.framed = false;
     view.mesh.clear();
     view.field.setFog(nullptr);
@@ -40,6 +40,7 @@ void Workbench::show(document::Document other) {
 void Workbench::edit(const document::edits::Edit& edit, const std::string& label) {
     if (!edit) return say(edit.error().message, true);
     if (const Status s = document.apply(*edit, label); !s) return say(s.error().message, true);
+    panels.revealRow |= edit->node.has_value();
     say(label);
 }
 
@@ -166,30 +167,41 @@ void Workbench::exportTo(document::ExportRequest request) {
         say(s.error().message, true);
 }
 
-/// Shows a place in the text and its rule.
-static void reveal(Workbench& bench, const syntax::SourceSpan& span) {
-    if (!span.source || !bench.shown() || span.source != bench.shown()->grammar->sources.front().get()) return;
-    bench.panels.reveal = {span.begin, span.end};
-    bench.panels.revealRule = span.begin;
+/// Shows what is selected in the text.
+static void reveal(Workbench& bench) {
+    const auto& node = bench.document.choice().node;
+    if (!node) return;
+    bench.panels.reveal = {node->range.begin, node->range.end};
+    bench.panels.revealRow = true;
 }
 
 void Workbench::select(derive::ShapeId shape, bool quiet) {
-    selected_ = shape;
     view.face.reset();
-    document.select(shape == derive::none ? "" : tree()->path(shape, true));
-    if (shape != derive::none && !quiet) reveal(*this, tree()->shapes[shape].span);
+    if (!shown()) return;
+    selection.selectShape(document, *shown(), shape);
+    if (!quiet) reveal(*this);
+    if (const std::string notice = selection.takeNotice(); !notice.empty()) say(notice);
 }
 
 void Workbench::selectLive(derive::ShapeId shape) {
     const derive::ShapeTree& tree = steps.view()->tree;
+    const syntax::SourceSpan span = tree.shapes[shape].span;
     document.select(tree.path(shape, true));
+    document.selectNode(std::nullopt);
+    if (shown() && span.source == shown()->grammar->sources.front().get()) {
+        const auto rows = document::ruleRows(*document.ast());
+        const size_t row = rowOf(rows, document::TextRange{span.begin, span.end});
+        if (row < rows.size())
+            document.selectNode(document::SelectedNode{{rows[row].span.begin, rows[row].span.end}, rows[row].kind});
+    }
     resolveSelection();
-    reveal(*this, tree.shapes[shape].span);
+    reveal(*this);
 }
 
 void Workbench::resolveSelection() {
     view.face.reset();
-    selected_ = tree() ? document::selected(*tree(), document.choice().selection) : derive::none;
+    selection.resolve(document, shown(), !steps.view());
+    if (const std::string notice = selection.takeNotice(); !notice.empty()) say(notice);
 }
 
 void Workbench::beginSteps(const std::string& way) {

@@ -13,6 +13,7 @@
 #include "viewer/document/export_job.h"
 #include "viewer/document/picking.h"
 #include "viewer/document/recovery.h"
+#include "viewer/document/selection.h"
 #include "viewer/document/session.h"
 #include "viewer/document/step_job.h"
 #include "viewer/window/field_view.h"
@@ -96,7 +97,7 @@ struct Panels {
     bool noticeIsProblem = false;
     std::optional<std::pair<uint32_t, uint32_t>> reveal;  ///< bytes of the text to show, taken by the Text panel
     bool showText = false;                                ///< the Text panel is to come to the front
-    std::optional<uint32_t> revealRule;                   ///< a byte of the rule to show, taken by the Rules panel
+    bool revealRow = false;                               ///< the selected row is to be seen, taken by the Rules panel
     std::string hotkeys;                                  ///< of the grammar's parameters: they go before the view's
     bool typing = false;                                  ///< the text takes keys
     std::optional<Question> question;
@@ -126,7 +127,7 @@ public:
 
     // --- The document ---
     Status open(const std::filesystem::path& path);
-    /// Nothing but a notice where the edit was refused.
+    /// Nothing but a notice where the edit was refused. What it adds or moves is selected.
     void edit(const document::edits::Edit& edit, const std::string& label);
     void undo();
     void redo();
@@ -156,7 +157,7 @@ public:
     void select(derive::ShapeId shape, bool quiet = false);
     /// A shape of the derivation by hand. The model that has it may come later, or not at all while the text is wrong.
     void selectLive(derive::ShapeId shape);
-    derive::ShapeId selected() const { return selected_; }
+    derive::ShapeId selected() const { return selection.shape(); }
     const document::BuiltModel* shown() const { return session.model().get(); }
     const derive::ShapeTree* tree() const { return shown() ? &shown()->model.derivation.tree : nullptr; }
 
@@ -177,6 +178,7 @@ public:
 
     Report& report;
     document::Document document;
+    document::Selection selection;
     document::Session session;
     SceneUploader uploader;
     document::ExportJob exporting;
@@ -217,7 +219,6 @@ private:
     std::function<void()> notify_;
     document::Recovery recovery_;
     ByHand byHand_;
-    derive::ShapeId selected_ = derive::none;
     LastRequest asked_;
 };
 

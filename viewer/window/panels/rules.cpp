@@ -63,6 +63,16 @@ void label(const char* text, float& left) {
     ImGui::SameLine(left);
 }
 
+/// The part whose body is the selected shape alone: what is done with the shape is done with the part.
+const syntax::Case* onlyShapeOf(const std::vector<document::RuleRow>& rows, size_t row) {
+    if (rows[row].kind != Kind::Element) return nullptr;
+    size_t above = row;
+    while (above > 0 && rows[above].depth >= rows[row].depth) --above;
+    const syntax::Case* part = rows[above].kind == Kind::Case ? rows[above].part : nullptr;
+    const bool alone = part && part->body && part->body->siblings.size() == 1 && part->body->siblings[0].size() == 1;
+    return alone && &part->body->siblings[0][0] == rows[row].element ? part : nullptr;
+}
+
 /// Which files' rules work beside those of the text.
 void nameUses(const syntax::Ast& ast) {
     if (ast.uses.empty()) return;
@@ -82,16 +92,7 @@ void RulesPanel::show(Workbench& bench) {
         listed_ = bench.document.ast();
         rows_ = document::ruleRows(*listed_);
     }
-    if (bench.panels.revealRule) {
-        const size_t row = rowAt(rows_, *bench.panels.revealRule);
-        if (row < rows_.size()) at_ = rows_[row].span.begin, kind_ = rows_[row].kind;
-        bench.panels.revealRule.reset();
-        scroll_ = true;
-    }
-    size_t selected = rows_.size();
-    if (at_)
-        for (size_t i = rows_.size(); i-- > 0;)
-            if (rows_[i].span.begin == *at_ && (rows_[i].kind == kind_ || selected == rows_.size())) selected = i;
+    const size_t selected = selected_ = selectedRow(bench);
     const float below =
         selected < rows_.size() ? ImGui::GetContentRegionAvail().y * 0.46f : ImGui::GetFrameHeightWithSpacing() * 1.3f;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(8, 2));
@@ -101,9 +102,12 @@ void RulesPanel::show(Workbench& bench) {
         while (clipper.Step())
             for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) row(bench, size_t(i));
         nameUses(*listed_);
-        if (std::exchange(scroll_, false))
-            ImGui::SetScrollY(std::max(
-                0.0f, (ImGui::GetTextLineHeight() + 6) * static_cast<float>(selected) - ImGui::GetWindowHeight() / 3));
+        if (std::exchange(bench.panels.revealRow, false) && selected < rows_.size()) {
+            const float height = ImGui::GetTextLineHeight() + 6, y = height * static_cast<float>(selected);
+            const float above = ImGui::GetScrollY();
+            if (y < above || y + height > above + ImGui::GetWindowHeight())
+                ImGui::SetScrollY(std::max(0.0f, y - ImGui::GetWindowHeight() / 3));
+        }
     }
     ImGui::EndChild();
     ImGui::PopStyleVar();
@@ -118,6 +122,19 @@ void RulesPanel::show(Workbench& bench) {
         newRule(bench, selected);
     }
     ImGui::EndChild();
+}
+
+/// The row of what is selected; what an edit left vague is said exactly.
+size_t RulesPanel::selectedRow(Workbench& bench) {
+    const auto& node = bench.document.choice().node;
+    if (!node) return rows_.size();
+    const size_t row = rowOf(rows_, *node);
+    if (row == rows_.size())
+        bench.document.selectNode(std::nullopt);
+    else
+        bench.document.selectNode(
+            document::SelectedNode{{rows_[row].span.begin, rows_[row].span.end}, rows_[row].kind});
+    return row;
 }
 
 void RulesPanel::newRule(Workbench& bench, size_t selected) {
@@ -142,19 +159,18 @@ void RulesPanel::row(Workbench& bench, size_t index) {
     const document::RuleRow& row = rows_[index];
     ImGui::PushID(static_cast<int>(index));
     const ImVec2 low = ImGui::GetCursorScreenPos();
-    const bool isHead = row.depth == 0, selected = at_ && *at_ == row.span.begin && kind_ == row.kind;
-    if (ImGui::Selectable("##row", selected, 0, {0, ImGui::GetTextLineHeight() + 4})) {
-        at_ = row.span.begin;
-        kind_ = row.kind;
+    const bool isHead = row.depth == 0;
+    if (ImGui::Selectable("##row", index == selected_, 0, {0, ImGui::GetTextLineHeight() + 4})) {
         bench.panels.reveal = {row.span.begin, row.span.end};
-        selectText(bench, row.span.begin);
+        selectRow(bench, row);
+        bench.panels.revealRow = true;  // the fields below come, and take room
     }
     bench.report.mark(fmt::format("rule.{}.{}", listed_->source->place(row.span.begin).line, row.text));
     if (row.kind == Kind::Rule) dragRule(row, low);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     ImFont* font = isHead ? strongFont() : codeFont();
     const float x = low.x + 4 + static_cast<float>(row.depth) * 14;
-    const std::string text = (row.kind == Kind::Element && row.first && row.sibling > 0 ? ", " : "") + row.text;
+    const std::string text = (row.first && row.sibling > 0 ? ", " : "") + row.text;
     list.AddText(font, font->FontSize, {x, low.y + 2}, colorOf(row), text.c_str());
     ImGui::PopID();
 }
@@ -185,7 +201,7 @@ void RulesPanel::part(Workbench& bench, const char* name, const std::string& val
     float left = 0;
     label(name, left);
     const std::string id = std::string("edit.") + name;
-    if (refused_ && (refused_->at != at_ || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false))) refused_.reset();
+    if (refused_ && (refused_->row != selected_ || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false))) refused_.reset();
     const bool wasRefused = refused_ && refused_->field == id;
     std::string text = holding_ == id ? held_ : wasRefused ? refused_->text : value;
     ImGui::BeginGroup();
@@ -203,7 +219,7 @@ void RulesPanel::part(Workbench& bench, const char* name, const std::string& val
         if (wasRefused) refused_.reset();
         if (text != value) {
             const document::edits::Edit edit = commit(text);
-            if (!edit) refused_ = Refused{at_, id, text, edit.error().message};
+            if (!edit) refused_ = Refused{selected_, id, text, edit.error().message};
             bench.edit(edit, fmt::format("Change {}", name));
         }
     }
@@ -220,14 +236,13 @@ void RulesPanel::inspector(Workbench& bench, const document::RuleRow& row) {
     const syntax::Ast& ast = *listed_;
     if (row.kind == Kind::Element || row.kind == Kind::Attribute)
         elementInspector(bench, row);
+    else if (row.kind == Kind::Case)
+        partInspector(bench, *row.part);
     else if (row.rule)
         ruleInspector(bench, row);
     else if (row.start)
         part(bench, "body", std::string(row.start->body.span.text()),
              [&](const std::string& t) { return document::edits::setBody(ast, row.start->body, t); });
-    if (row.kind == Kind::Case && row.expression)
-        part(bench, "label", std::string(row.expression->span.text()),
-             [&](const std::string& t) { return document::edits::setExpression(ast, *row.expression, t); });
 }
 
 void RulesPanel::ruleInspector(Workbench& bench, const document::RuleRow& row) {
@@ -268,6 +283,26 @@ void RulesPanel::elementInspector(Workbench& bench, const document::RuleRow& row
     if (oneOf(bench.report, "op", operators, op))
         bench.edit(document::edits::setOperator(ast, element, static_cast<Operator>(op)),
                    fmt::format("{} becomes {}", operators[static_cast<size_t>(element.op)], operators[size_t(op)]));
+    if (const syntax::Case* whole = onlyShapeOf(rows_, selected_))
+        partButtons(bench, *whole);
+    else
+        elementButtons(bench, element);
+    if (element.kind == Element::Kind::Shape && element.solid) {
+        part(bench, "solid", textOf(element.solid),
+             [&](const std::string& t) { return document::edits::setSolid(ast, element, t); });
+        part(bench, "live", element.live.text,
+             [&](const std::string& t) { return document::edits::setLive(ast, element, t); });
+    } else if (element.over) {
+        part(bench, "over", textOf(element.over),
+             [&](const std::string& t) { return document::edits::setExpression(ast, *element.over, t); });
+    }
+    if (row.attribute && row.attribute->operation->hasBlock()) return divisionInspector(bench, row);
+    if (!element.cases.empty()) blockInspector(bench, element.cases, nullptr);
+    attributes(bench, element);
+}
+
+void RulesPanel::elementButtons(Workbench& bench, const Element& element) {
+    const syntax::Ast& ast = *listed_;
     if (button(bench.report, "element.duplicate", "Duplicate"))
         bench.edit(document::edits::duplicateElement(ast, element), "Duplicate a shape");
     ImGui::SameLine();
@@ -279,16 +314,6 @@ void RulesPanel::elementInspector(Workbench& bench, const document::RuleRow& row
     ImGui::SameLine();
     if (button(bench.report, "element.down", "Down"))
         bench.edit(document::edits::moveElement(ast, element, 1), "Move a shape");
-    if (element.kind == Element::Kind::Shape) {
-        part(bench, "solid", textOf(element.solid),
-             [&](const std::string& t) { return document::edits::setSolid(ast, element, t); });
-        part(bench, "live", element.live.text,
-             [&](const std::string& t) { return document::edits::setLive(ast, element, t); });
-    } else if (element.over) {
-        part(bench, "over", textOf(element.over),
-             [&](const std::string& t) { return document::edits::setExpression(ast, *element.over, t); });
-    }
-    attributes(bench, element);
 }
 
 void RulesPanel::attributes(Workbench& bench, const Element& element) {

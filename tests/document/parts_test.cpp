@@ -1,0 +1,95 @@
+// Parts of a split, of faces and of a choice: added, taken out, copied, moved and changed with their bars.
+#include "tests/document/texts.h"
+
+namespace sgm::document {
+namespace {
+
+constexpr const char* bay =
+    "grammar 2\n"
+    "start Front -> size (9, 3, .3) Row\n"
+    "rule Row -> split x { .5m: brick | { ~2m: Bay }* | .5m: brick } // one line\n"
+    "rule Bay -> split y {\n"
+    "    1m: brick   // the sill\n"
+    "  | ~1: Window\n"
+    "  | 20%: brick  // above\n"
+    "}\n"
+    "rule Window -> split x {\n"
+    "    ~1: brick |  // left\n"
+    "    ~2: glass |\n"
+    "    ~1: choose { 2: brick | 1: glass }\n"
+    "}\n";
+
+class Parts : public testing::Test {
+protected:
+    using Cases = std::vector<syntax::Case>;
+    const Cases& partsOf(size_t rule) const {
+        const syntax::Element& element = ast.rules[rule].body.siblings[0][0];
+        return element.before[0].cases;
+    }
+
+    void expectReplaced(const edits::Edit& edit, std::string_view from, std::string_view to) {
+        ASSERT_TRUE(edit.ok()) << edit.error().message;
+        EXPECT_EQ(applied(bay, *edit), replaced(bay, from, to));
+    }
+    static void expectRefused(const edits::Edit& edit, const std::string& why) {
+        ASSERT_FALSE(edit.ok());
+        EXPECT_NE(edit.error().message.find(why), std::string::npos) << edit.error().message;
+    }
+    /// The text at the node that the edit leaves selected.
+    static std::string nodeOf(const edits::Edit& edit) {
+        return applied(bay, *edit).substr(edit->begin + edit->node.value(), 9);
+    }
+
+    syntax::Ast ast = parsed(bay);
+    const Cases &row = partsOf(0), &floors = partsOf(1), &window = partsOf(2);
+};
+
+TEST_F(Parts, AreTakenOut) {
+    expectReplaced(edits::removePart(ast, row[0]), "{ .5m: brick | { ~2m", "{ { ~2m");
+    expectReplaced(edits::removePart(ast, row[1]), " { ~2m: Bay }* |", "");
+    expectReplaced(edits::removePart(ast, row[2]), " | .5m: brick } // one", " } // one");
+    expectReplaced(edits::removePart(ast, floors[0]), "1m: brick   // the sill\n  | ~1", "// the sill\n  ~1");
+    expectReplaced(edits::removePart(ast, floors[1]), "  | ~1: Window\n", "");
+    expectReplaced(edits::removePart(ast, floors[2]), "| 20%: brick  // above", "// above");
+    expectReplaced(edits::removePart(ast, window[1]), "    ~2: glass |\n", "");
+    expectReplaced(edits::removePart(ast, window[2]), " |\n    ~1: choose { 2: brick | 1: glass }", "");
+    expectRefused(edits::removePart(ast, row[1].cases[0]), "only part");
+}
+
+TEST_F(Parts, AreAddedAndCopied) {
+    expectReplaced(edits::addPart(ast, row[2], "~1: cube"), "brick } // one", "brick | ~1: cube } // one");
+    expectReplaced(edits::duplicatePart(ast, row[1]), "{ ~2m: Bay }*", "{ ~2m: Bay }* | { ~2m: Bay }*");
+    expectReplaced(edits::addPart(ast, row[1].cases[0], "1m: brick"), "~2m: Bay }", "~2m: Bay | 1m: brick }");
+    expectReplaced(edits::addPart(ast, floors[0], "{ ~1m: cube }*"), "// the sill\n",
+                   "// the sill\n  | { ~1m: cube }*\n");
+    expectReplaced(edits::duplicatePart(ast, floors[2]), "  // above\n", "  // above\n  | 20%: brick\n");
+    expectReplaced(edits::duplicatePart(ast, window[1]), "~2: glass |", "~2: glass |\n    ~2: glass |");
+    expectReplaced(edits::addPart(ast, window[2].body->siblings[0][0].cases[1], edits::samplePart(nullptr)),
+                   "1: glass }", "1: glass | 1: cube }");
+    expectRefused(edits::addPart(ast, row[2], "cube"), "label");
+    expectRefused(edits::addPart(ast, row[2], "1m: cube }"), "}");
+    EXPECT_EQ(nodeOf(edits::addPart(ast, row[2], "~1: torus")), "~1: torus") << "what is added is selected";
+}
+
+TEST_F(Parts, ChangePlaces) {
+    expectReplaced(edits::movePart(ast, row[0], 1), ".5m: brick | { ~2m: Bay }*", "{ ~2m: Bay }* | .5m: brick");
+    expectReplaced(edits::movePart(ast, floors[2], -1), "~1: Window\n  | 20%: brick", "20%: brick\n  | ~1: Window");
+    EXPECT_EQ(nodeOf(edits::movePart(ast, row[0], 1)), ".5m: bric");
+    EXPECT_EQ(nodeOf(edits::movePart(ast, floors[2], -1)), "20%: bric");
+    expectRefused(edits::movePart(ast, row[0], -1), "no part");
+    expectRefused(edits::movePart(ast, row[2], 1), "no part");
+}
+
+TEST_F(Parts, TakeSizesAndCounts) {
+    expectReplaced(edits::setPartLabel(ast, floors[0], "100% - 2m"), "1m: brick   //", "100% - 2m: brick   //");
+    expectReplaced(edits::setPartLabel(ast, window[1], "~3"), "~2: glass", "~3: glass");
+    expectReplaced(edits::setPartTimes(ast, row[1], "3"), "}*", "}3");
+    expectReplaced(edits::setPartTimes(ast, row[1], "+"), "}*", "}+");
+    expectReplaced(edits::setPartTimes(ast, row[1], "2 + 1"), "}*", "}(2 + 1)");
+    expectRefused(edits::setPartTimes(ast, row[0], "3"), "repeats");
+    expectRefused(edits::setPartLabel(ast, row[1], "3m"), "no label");
+    EXPECT_FALSE(edits::setPartLabel(ast, floors[0], "").ok());
+}
+
+}  // namespace
+}  // namespace sgm::document
