@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/document/texts.h"
+#include "tests/document/shown.h"
 #include "tests/scratch.h"
 
 namespace sgm::document {
@@ -45,6 +45,15 @@ TEST(Documents, UndoAndRedoWithChoiceAndSelection) {
     document.undo();
     ASSERT_TRUE(document.apply(edit(document, "// the end", "// end"), "Cut").ok());
     EXPECT_FALSE(document.history().canRedo());
+}
+
+TEST(Documents, ANewOneShowsABox) {
+    const Document document;
+    EXPECT_FALSE(document.dirty());
+    EXPECT_EQ(document.ast()->version, 2);
+    const auto model = shown(document);
+    ASSERT_TRUE(model);
+    EXPECT_EQ(model->model.derivation.tree.shapes[1].scope.size, (Vec3d{6, 3, 4}));
 }
 
 TEST(Documents, TheTreeIsAlwaysOfTheText) {

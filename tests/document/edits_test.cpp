@@ -41,6 +41,23 @@ TEST_F(Edits, AddARule) {
               "grammar 1\nstart A -> cube\nrule A -> cone\n");
 }
 
+TEST_F(Edits, AddARuleOrStartAsItIsWritten) {
+    expectReplaced(edits::addDeclaration(ast, "Door -> cone", &rule(0)), "// roof\n", "// roof\nrule Door -> cone\n");
+    expectReplaced(edits::addDeclaration(ast, " rule D: Door when lean > 0 -> cone", &rule(0)), "// roof\n",
+                   "// roof\nrule D: Door when lean > 0 -> cone\n");
+    expectReplaced(edits::addDeclaration(ast, "start House -> cube"), "// ground\n",
+                   "// ground\nstart House -> cube\n");
+    expectRefused(edits::addDeclaration(ast, "Up: Door -> cone"), "another rule is called 'Up'");
+    expectRefused(edits::addDeclaration(ast, "Door -> cone size"), "'size' needs");
+    expectRefused(edits::addDeclaration(ast, "start -> cone"), "expected");
+    // What a text begins with is its start.
+    EXPECT_EQ(applied("grammar 2\n", *edits::addDeclaration(parsed("grammar 2\n"), "Name -> sphere")),
+              "grammar 2\nstart Name -> sphere\n");
+    const std::string ruled = "grammar 2\n\n// walls\nrule A -> cube\n";
+    EXPECT_EQ(applied(ruled, *edits::addDeclaration(parsed(ruled), "rule B -> A")),
+              "grammar 2\n\nstart B -> A\n// walls\nrule A -> cube\n");
+}
+
 TEST_F(Edits, RemoveARule) {
     expectReplaced(edits::removeRule(ast, rule(2)),
                    "rule Wing weight 1 -> cube when bulge == round { + cone at +y },\n     sphere\n", "");

@@ -63,10 +63,17 @@ private:
     size_t at_ = 0;  ///< entries before it are done, the others undone
 };
 
+/// What a new document says: a box, with the standard library's solids for walls at hand.
+inline constexpr const char* newGrammar =
+    "grammar 2\n"
+    "use \"std/walls.sgm\"\n"
+    "\n"
+    "start House -> stone size (6m, 3m, 4m)\n";
+
 class Document {
 public:
     /// A new one without a file. Counts as saved until it is edited.
-    explicit Document(std::string text = "grammar 1\n");
+    explicit Document(std::string text = newGrammar);
     /// Error::Input when the file can't be read.
     static Result<Document> open(const std::filesystem::path& path);
     /// A document whose unsaved text was recovered: `text` is one edit of what the file holds now, or all of a new

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "grammar/syntax/parser.h"
 #include "viewer/document/nodes.h"
 
 namespace sgm::document::edits {
@@ -86,11 +87,8 @@ Edit setPart(const Ast& ast, const RuleDecl& rule, std::string_view word, const 
     return setPart(ast, rule, word, present ? &present->span : nullptr, *written);
 }
 
-}  // namespace
-
-Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, const RuleDecl* after) {
-    const auto name = asName(symbol);
-    if (!name.ok()) return name.error();
+/// A rule in lines of its own: behind `after`, or else behind the last of its symbol, or else of all.
+Edit insertRule(const Ast& ast, const ListedRule& added, std::string lines, const RuleDecl* after) {
     const std::string_view text = ast.source->text();
     if (!after)
         for (const RuleDecl& rule : ast.rules)
@@ -98,8 +96,52 @@ Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, con
     if (!after && !ast.rules.empty()) after = &ast.rules.back();
     const uint32_t end = after ? linesOf(ast, *after).end : static_cast<uint32_t>(text.size());
     std::vector<ListedRule> rules = listed(ast);
-    rules.insert(rules.begin() + (after ? placeOf(ast, *after) + 1 : 0), {nullptr, *name, {}});
-    return withWays(ast, insertion(text, end, fmt::format("rule {} -> {}", *name, body)), rules);
+    rules.insert(rules.begin() + (after ? placeOf(ast, *after) + 1 : 0), added);
+    return withWays(ast, insertion(text, end, std::move(lines)), rules);
+}
+
+/// A start: behind the last one, or else before the first rule and its comments, or else at the end.
+Edit insertStart(const Ast& ast, std::string_view declared) {
+    const std::string_view text = ast.source->text();
+    std::string lines = fmt::format("start {}", declared);
+    if (!ast.starts.empty()) return tried(ast, insertion(text, lineEnd(text, ast.starts.back().span.end), lines));
+    if (ast.rules.empty()) return tried(ast, insertion(text, static_cast<uint32_t>(text.size()), lines));
+    const uint32_t at = linesWithComments(ast, ast.rules.front()).begin;
+    return tried(ast, {at, at, lines + "\n", 0});
+}
+
+std::optional<Error> nameTaken(const Ast& ast, std::string_view name) {
+    const bool taken = !name.empty() && std::any_of(ast.rules.begin(), ast.rules.end(),
+                                                    [&](const RuleDecl& r) { return r.name.text == name; });
+    return taken ? std::optional(refused(fmt::format("another rule is called '{}'", name))) : std::nullopt;
+}
+
+}  // namespace
+
+Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, const RuleDecl* after) {
+    const auto name = asName(symbol);
+    if (!name.ok()) return name.error();
+    return insertRule(ast, {nullptr, *name, {}}, fmt::format("rule {} -> {}", *name, body), after);
+}
+
+Edit addDeclaration(const Ast& ast, std::string_view written, const RuleDecl* after) {
+    const auto from = [](std::string_view text) {
+        return text.substr(std::min(text.find_first_not_of(" \t"), text.size()));
+    };
+    std::string_view text = from(written);
+    const bool saysStart = text.substr(0, 6) == "start ";
+    if (saysStart || text.substr(0, 5) == "rule ") text = from(text.substr(saysStart ? 6 : 5));
+    if (saysStart || ast.starts.empty()) return insertStart(ast, text);
+    // What is wrong with the text itself is said of it alone.
+    syntax::Diagnostics problems;
+    const syntax::Ast alone = syntax::parse(
+        std::make_shared<const syntax::Source>("rule", fmt::format("grammar {}\nrule {}\n", ast.version, text)),
+        *ast.operations, problems);
+    if (problems.hasErrors()) return refused(problems.all()[0].message);
+    if (alone.rules.size() != 1) return refused(fmt::format("'{}' is no rule: write 'Name -> body'", text));
+    const RuleDecl& rule = alone.rules[0];
+    if (const auto taken = nameTaken(ast, rule.name.text)) return *taken;
+    return insertRule(ast, {nullptr, rule.symbol.text, rule.name.text}, fmt::format("rule {}", text), after);
 }
 
 Edit removeRule(const Ast& ast, const RuleDecl& rule) {

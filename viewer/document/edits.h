@@ -26,6 +26,9 @@ using Edit = Result<TextEdit>;
 
 /// A new rule "rule SYMBOL -> BODY", behind `after`, or else behind the last rule of that symbol, else of all.
 Edit addRule(const Ast& ast, std::string_view symbol, std::string_view body, const RuleDecl* after = nullptr);
+/// A new rule or start as it is written: "Name when n > 2 -> BODY", "rule …", or "start …". Where the text has no
+/// start, it is made the start. It stands behind `after`, a start behind the last one and else before the rules.
+Edit addDeclaration(const Ast& ast, std::string_view written, const RuleDecl* after = nullptr);
 /// Takes the rule's lines out, with comments in and behind them; those above it stay.
 Edit removeRule(const Ast& ast, const RuleDecl& rule);
 /// A copy right behind the rule. A copy of a named rule takes the next free name: R1, then R1b, R1c …

@@ -139,19 +139,16 @@ size_t RulesPanel::selectedRow(Workbench& bench) {
 
 void RulesPanel::newRule(Workbench& bench, size_t selected) {
     const float width = ImGui::CalcTextSize("Add rule").x + 2 * ImGui::GetStyle().FramePadding.x;
-    field(bench.report, "rule.new", newRule_, "Name -> body",
+    field(bench.report, "rule.new", newRule_, "Name -> body, or start Name -> body",
           ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
-    const size_t arrow = newRule_.find("->");
-    const bool done = entered() && arrow != std::string::npos;
+    const bool hasBody = newRule_.find("->") != std::string::npos, done = entered() && hasBody;
     ImGui::SameLine();
-    if (button(bench.report, "rule.add", "Add rule", "A new rule, behind the selected one or the last of its shape",
-               arrow != std::string::npos) ||
+    if (button(bench.report, "rule.add", "Add rule",
+               "A new rule, behind the selected one or the last of its shape; 'start Name -> body' adds a start",
+               hasBody) ||
         done) {
-        std::string symbol = newRule_.substr(0, arrow);
-        while (!symbol.empty() && symbol.back() == ' ') symbol.pop_back();
         const syntax::RuleDecl* after = selected < rows_.size() ? rows_[selected].rule : nullptr;
-        const size_t body = std::min(newRule_.find_first_not_of(' ', arrow + 2), newRule_.size());
-        bench.edit(document::edits::addRule(*listed_, symbol, newRule_.substr(body), after), "Add rule for " + symbol);
+        bench.edit(document::edits::addDeclaration(*listed_, newRule_, after), "Add " + newRule_);
     }
 }
 
