@@ -74,6 +74,11 @@ TEST_F(Picking, DroppingOnAJointRetargets) {
     EXPECT_NE(elsewhere.error().message.find("can't join it to"), std::string::npos) << elsewhere.error().message;
     EXPECT_FALSE(attach(document, *model, 0, arm, 0).ok());
 
+    const auto hosts = hostsFor(document, *model, cone);
+    ASSERT_TRUE(hosts.ok()) << hosts.error().message;
+    EXPECT_EQ(*hosts, std::vector{arm}) << "only joints at which it can be joined light up";
+    EXPECT_FALSE(hostsFor(document, *model, body).ok());
+
     // The edited model has the cone where it was dropped.
     ASSERT_TRUE(document.apply(*edit, "Attach").ok());
     EXPECT_FALSE(isCurrent(document, *model));

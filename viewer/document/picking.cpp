@@ -129,9 +129,11 @@ bool samePlace(const ShapeTree& tree, ShapeId a, ShapeId b) {
 
 }  // namespace
 
-edits::Edit attach(const Document& document, const BuiltModel& shown, ShapeId moved, ShapeId host, uint32_t joint) {
-    const Derivation& derivation = shown.model.derivation;
-    const ShapeTree& tree = derivation.tree;
+namespace {
+
+/// The element that puts `moved` on another shape, if it can be joined elsewhere.
+Result<const syntax::Element*> joinedElement(const Document& document, const BuiltModel& shown, ShapeId moved) {
+    const ShapeTree& tree = shown.model.derivation.tree;
     if (!isCurrent(document, shown)) return edits::refused("the text has changed since this model was made");
     const syntax::Element* element = elementOf(document, shown, moved);
     if (!element)
@@ -140,6 +142,26 @@ edits::Edit attach(const Document& document, const BuiltModel& shown, ShapeId mo
                         tree.shapes[moved].span.source ? tree.shapes[moved].span.source->name() : ""));
     if (moved == 0 || element->op == syntax::Operator::None)
         return edits::refused(fmt::format("'{}' is the content of its shape and joined to nothing", tree.path(moved)));
+    return element;
+}
+
+}  // namespace
+
+Result<std::vector<ShapeId>> hostsFor(const Document& document, const BuiltModel& shown, ShapeId moved) {
+    const auto element = joinedElement(document, shown, moved);
+    if (!element.ok()) return element.error();
+    const ShapeTree& tree = shown.model.derivation.tree;
+    const ShapeId stands = hostOf(tree, moved);
+    std::vector<ShapeId> hosts;
+    for (ShapeId id = 0; id != none; id = tree.next(id))
+        if (tree.bonds().ownsBody(id) && samePlace(tree, stands, id)) hosts.push_back(id);
+    return hosts;
+}
+
+edits::Edit attach(const Document& document, const BuiltModel& shown, ShapeId moved, ShapeId host, uint32_t joint) {
+    const auto element = joinedElement(document, shown, moved);
+    if (!element.ok()) return element.error();
+    const ShapeTree& tree = shown.model.derivation.tree;
     const ShapeId stands = hostOf(tree, moved);
     if (!samePlace(tree, stands, host))
         return edits::refused(fmt::format("'{}' grows on '{}': its rule can't join it to '{}'", tree.path(moved),

@@ -44,6 +44,9 @@ bool isCurrent(const Document& document, const BuiltModel& shown);
 /// isn't current.
 const syntax::Element* elementOf(const Document& document, const BuiltModel& shown, derive::ShapeId shape);
 
+/// The shapes at whose joints `moved` can be joined: that on which its rule puts it, and those that fill the same
+/// place. Error::Input, in words, where there is none. Costs one look at every shape.
+Result<std::vector<derive::ShapeId>> hostsFor(const Document& document, const BuiltModel& shown, derive::ShapeId moved);
 /// Joins `moved` at a joint of `host`: what dropping a shape on a joint asks for. Error::Input, in words, where the
 /// grammar can't say so: the element is joined to another shape than `host`, it is the content of its shape, it stands
 /// in a used file.

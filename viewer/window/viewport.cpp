@@ -62,11 +62,15 @@ std::optional<Hover> hoverAt(Workbench& bench, ImVec2 low, ImVec2 mouse) {
     return pick ? hoverOf(bench, *pick) : std::nullopt;
 }
 
-/// A shape that is dragged here from the Shapes panel is joined at the joint under the pointer.
+/// A shape that is dragged here from the Shapes panel is joined at the joint under the pointer. Those that it can be
+/// joined at show; where there are none, why.
 void takeShape(Workbench& bench, const Projection& project, ImDrawList& list) {
     const ImGuiPayload* dragged = ImGui::GetDragDropPayload();
     if (!dragged || !dragged->IsDataType("shape") || !bench.tree()) return;
-    const std::vector<ScreenJoint> joints = screenJoints(*bench.tree(), everyOwner(*bench.tree()), project);
+    const auto moved = *static_cast<const derive::ShapeId*>(dragged->Data);
+    const auto hosts = document::hostsFor(bench.document, *bench.shown(), moved);
+    if (!hosts.ok()) return bench.say(hosts.error().message, true);
+    const std::vector<ScreenJoint> joints = screenJoints(*bench.tree(), *hosts, project);
     drawJoints(joints, list);
     for (const ScreenJoint& joint : joints) {
         const float r = ImGui::GetFontSize() * 0.3f;
@@ -79,7 +83,7 @@ void takeShape(Workbench& bench, const Projection& project, ImDrawList& list) {
     if (!ImGui::BeginDragDropTarget()) return;
     if (const ImGuiPayload* dropped = ImGui::AcceptDragDropPayload("shape", ImGuiDragDropFlags_AcceptNoDrawDefaultRect);
         dropped && nearest)
-        attach(bench, *static_cast<const derive::ShapeId*>(dropped->Data), nearest->mark.shape, nearest->mark.joint);
+        attach(bench, moved, nearest->mark.shape, nearest->mark.joint);
     ImGui::EndDragDropTarget();
 }
 
