@@ -31,6 +31,25 @@ TEST_F(Plans, KeysFlyAndWalk) {
     choose("Walk");
     key("w");
     EXPECT_NEAR(eye(), 1 + 1.7, .01);
+    // Beside the model the plane at its foot does.
+    key("Home");
+    key("1");
+    for (int i = 0; i < 3; ++i) key("w");
+    EXPECT_GT(state()["eye"][2], 15);
+    EXPECT_NEAR(eye(), -1 + 1.7, .01);
+}
+
+TEST_F(Plans, ANarrowBarShowsAllItsControls) {
+    size = "780x700";
+    openText("grammar 2\nstart A -> cube size (3m, 2m, 3m)\n");
+    click("pane.Mesh");
+    click("mesh.section");
+    for (const char* name : {"pane.Field", "look.inside", "look.motion", "bar.help", "mesh.look", "section.share"}) {
+        ASSERT_TRUE(has(name)) << name;
+        const auto place = report()["widgets"][name];
+        EXPECT_LE(place[0].get<double>() + place[2].get<double>(), 780) << name;
+    }
+    shoot("narrow");
 }
 
 TEST_F(Plans, APlanIsDraggedByItsHandles) {

@@ -20,13 +20,8 @@ using namespace widgets;
 
 constexpr float widthForAll = 62;  // of the bar, in font sizes: a narrower one leaves out what a key does as well
 
-void gap() {
-    ImGui::SameLine(0, 14);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddLine({at.x, at.y + 3}, {at.x, at.y + ImGui::GetFrameHeight() - 3},
-                                        ImGui::GetColorU32(ImGuiCol_Border));
-    ImGui::SameLine(0, 15);
-}
+float widthOf(const char* label) { return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x; }
+float widthOfToggle(const char* label) { return widthOf(label) + ImGui::GetFrameHeight(); }
 
 /// What the shown model is, and the times of its stages, a line each; both empty where there is none.
 std::pair<std::string, std::string> factsOf(const Workbench& bench) {
@@ -47,7 +42,24 @@ std::pair<std::string, std::string> factsOf(const Workbench& bench) {
 
 }  // namespace
 
+void Bars::flow(float width, float space) {
+    ImGui::SameLine(0, space);
+    if (ImGui::GetCursorScreenPos().x + width <= ImGui::GetWindowPos().x + ImGui::GetWindowWidth() - 8) return;
+    ImGui::NewLine();
+    ++lines_;
+}
+
+void Bars::flowApart(float width) {
+    const int line = lines_;
+    flow(width, 29);
+    if (line != lines_) return;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddLine({at.x - 15, at.y + 3}, {at.x - 15, at.y + ImGui::GetFrameHeight() - 3},
+                                        ImGui::GetColorU32(ImGuiCol_Border));
+}
+
 void Bars::top(Workbench& bench) {
+    lines_ = 1;
     Report& report = bench.report;
     const document::Document& document = bench.document;
     ImGui::AlignTextToFramePadding();
@@ -75,85 +87,84 @@ void Bars::top(Workbench& bench) {
     if (quietButton(report, "bar.redo", "Redo", document.history().canRedo() ? redo.c_str() : nullptr,
                     document.history().canRedo()))
         bench.redo();
-    gap();
+    flowApart(widthOf("Field") + widthOf("Fog") + widthOf("Mesh") + widthOf("Split") + 3);
     int pane = static_cast<int>(bench.view.look.pane);
     constexpr std::array panes{"Field", "Fog", "Mesh", "Split"};
     constexpr std::array meanings{"The field itself, by rays: exact, and there at once",
                                   "The solid as a cloud of that shape", "The mesh that would be exported",
                                   "Field and mesh side by side"};
     if (oneOf(report, "pane", panes, pane, meanings)) bench.view.look.pane = static_cast<Pane>(pane);
-    gap();
     lookControls(bench);
-    const float end = ImGui::GetItemRectMax().x;
-    if (bench.view.wantsMesh()) {
-        if (!wrapped_) gap();
-        const float start = ImGui::GetCursorScreenPos().x;
-        meshControls(bench);
-        const float needed = end + 29 + ImGui::GetItemRectMax().x - start;
-        wrapped_ = needed > ImGui::GetWindowPos().x + ImGui::GetWindowWidth() - 8;
-    } else {
-        wrapped_ = false;
-    }
+    if (bench.view.wantsMesh()) meshControls(bench);
 }
 
 float Bars::height() const {
-    return ImGui::GetFrameHeight() + 14 + (wrapped_ ? ImGui::GetFrameHeightWithSpacing() : 0);
+    return ImGui::GetFrameHeight() + 14 + static_cast<float>(lines_ - 1) * ImGui::GetFrameHeightWithSpacing();
 }
 
 void Bars::lookControls(Workbench& bench) {
     Report& report = bench.report;
+    const float em = ImGui::GetFontSize();
     static const std::vector<std::string> joints{"No joints", "Its joints", "All joints"};
     int shown = static_cast<int>(bench.view.look.joints);
-    if (choice(report, "look.joints", joints, shown, ImGui::GetFontSize() * 7))
-        bench.view.look.joints = static_cast<JointsShown>(shown);
+    flowApart(em * 7);
+    if (choice(report, "look.joints", joints, shown, em * 7)) bench.view.look.joints = static_cast<JointsShown>(shown);
     hint("Joints of the selected shape or of all: red joins to a centre, green face to face, bonded ones filled");
-    ImGui::SameLine();
+    flow(widthOfToggle("Ground"));
     toggle(report, "look.ground", "Ground", bench.view.look.ground, "Stand the model on a plane that takes its shadow");
-    ImGui::SameLine();
     const bool within = bench.view.orbit.lamp_m > 0;
+    flow(widthOf("Outside"));
     if (button(report, "look.inside", within ? "Outside" : "Inside",
                "Stand in the largest hollow with a lamp, or leave it", bench.view.field.hasField()))
         within ? frameAll(bench) : bench.stepInside();
-    ImGui::SameLine();
-    if (bench.view.mapLayer.choose(bench)) ImGui::SameLine();
-    if (choosePlan(bench)) ImGui::SameLine();
+    if (bench.shown() && !bench.shown()->grammar->maps.empty()) {
+        flow(em * 7);
+        bench.view.mapLayer.choose(bench);
+    }
+    if (bench.session.plan()) {
+        flow(widthOfToggle("Plan"));
+        choosePlan(bench);
+    }
     static const std::vector<std::string> motions{"Orbit", "Fly", "Walk"};
     int motion = static_cast<int>(bench.view.look.motion);
-    if (choice(report, "look.motion", motions, motion, ImGui::GetFontSize() * 5)) {
+    flow(em * 5);
+    if (choice(report, "look.motion", motions, motion, em * 5)) {
         bench.view.look.motion = static_cast<Motion>(motion);
         bench.view.orbit.stands = bench.view.look.motion != Motion::Orbit;
     }
     hint("W A S D Q E turn about the model, fly through it, or walk on its ground");
-    ImGui::SameLine();
+    flow(widthOf("?"));
     if (quietButton(report, "bar.help", "?", "Keys and buttons (F1)")) help_ = !help_;
 }
 
 void Bars::meshControls(Workbench& bench) {
     Report& report = bench.report;
+    const float em = ImGui::GetFontSize();
     static const std::vector<std::string> looks{"Materials",  "Normals", "Curvature", "Rules",
                                                 "Components", "Labels",  "Creases"};
     int look = static_cast<int>(bench.view.look.mesh.look);
-    if (choice(report, "mesh.look", looks, look, ImGui::GetFontSize() * 7))
+    flowApart(em * 7);
+    if (choice(report, "mesh.look", looks, look, em * 7))
         bench.view.look.mesh.look = static_cast<render::MeshLook>(look);
     hint("What the mesh's colours tell");
-    ImGui::SameLine();
     static const std::vector<std::string> sizes{"64", "128", "192", "256", "384"};
     int size = 0;
     for (int i = 0; i < static_cast<int>(sizes.size()); ++i)
         if (std::stoi(sizes[size_t(i)]) == bench.view.look.meshResolution) size = i;
-    if (choice(report, "mesh.cells", sizes, size, ImGui::GetFontSize() * 4))
+    flow(em * 4);
+    if (choice(report, "mesh.cells", sizes, size, em * 4))
         bench.view.look.meshResolution = std::stoi(sizes[size_t(size)]);
     hint("Cells along the longest side: more are finer and slower");
-    ImGui::SameLine();
+    flow(widthOfToggle("Wire"));
     toggle(report, "mesh.wire", "Wire", bench.view.look.mesh.wireframe, "The edges of the triangles");
-    ImGui::SameLine();
+    flow(widthOfToggle("Section"));
     toggle(report, "mesh.section", "Section", bench.view.look.section, "Cut the mesh open along an axis");
     if (!bench.view.look.section) return;
-    ImGui::SameLine();
+    flow(3 * widthOf("x") + 2);
     constexpr std::array axes{"x", "y", "z"};
     oneOf(report, "section.axis", axes, bench.view.look.sectionAxis);
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6);
+    flow(em * 6);
+    ImGui::SetNextItemWidth(em * 6);
     ImGui::SliderFloat("##section", &bench.view.look.sectionShare, 0, 1, "");
     report.mark("section.share");
 }

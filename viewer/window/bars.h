@@ -10,7 +10,7 @@ namespace sgm::window {
 class Bars {
 public:
     void top(Workbench& bench);
-    /// Height of what `top` shows, pixels: two lines where the window is too narrow for one.
+    /// Height of what `top` showed last, pixels: more lines where the window is too narrow for one.
     float height() const;
     void status(Workbench& bench);
     /// A command about the document ends the field that takes keys, so that what was typed there counts. Call at the
@@ -24,6 +24,10 @@ public:
     void dialogs(Workbench& bench);
 
 private:
+    /// Goes on behind the last widget, or in a new line where no `width` pixels are left.
+    void flow(float width, float space = -1);
+    /// The same with a line between two groups.
+    void flowApart(float width);
     void lookControls(Workbench& bench);
     void meshControls(Workbench& bench);
     void save(Workbench& bench);
@@ -31,7 +35,7 @@ private:
 
     bool help_ = false;
     bool leftField_ = false;  ///< in this frame
-    bool wrapped_ = false;    ///< the mesh's controls have a line of their own
+    int lines_ = 1;           ///< of `top`
     Dialogs dialogs_;
 };
 
