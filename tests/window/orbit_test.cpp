@@ -17,6 +17,16 @@ TEST(Orbit, GivesBackTheCameraItWasMadeFrom) {
     EXPECT_EQ(back.at, camera.at);
 }
 
+TEST(Orbit, KeysMoveByTheClock) {
+    const auto held = [](int frames, double frame_s) {
+        double seconds = secondsHeld(9, true);  // the window rested for 9 s
+        for (int i = 0; i < frames; ++i) seconds += secondsHeld(frame_s, false);
+        return seconds;
+    };
+    EXPECT_NEAR(held(60, 1.0 / 60), held(4, 1.0 / 4), 1e-9) << "as far in slow pictures as in fast ones";
+    EXPECT_LT(held(1, .1), .2);
+}
+
 TEST(Orbit, TurningKeepsDistanceAndCentre) {
     Orbit orbit = Orbit::from({{4, 3, -2}, {1, 1, 1}});
     const double before = orbit.distance;

@@ -139,15 +139,15 @@ double lampFor(const eval::Tape& tape, const Box3f& bounds, Vec3d eyeAt) {
 }
 
 std::optional<double> surfaceBelow(const eval::Tape& tape, Vec3d from, double lowest_m) {
-    constexpr double near_m = 1e-3;
+    constexpr double near_m = 1e-3, least_m = 1e-2;  // a wall beside the way makes no smaller steps
     constexpr int most = 256;
     double height_m = from.y;
     for (int i = 0; i < most && height_m > lowest_m; ++i) {
         const Vec3d at{from.x, height_m, from.z};
         const double free_m = static_cast<double>(valuesAt(tape, {at.as<float>()})[0]) /
                               std::max(static_cast<double>(tape.lipschitz()), 1e-6);
-        if (free_m < near_m) return height_m;
-        height_m -= free_m;
+        if (free_m < near_m) return height_m - std::min(0.0, free_m);
+        height_m -= std::max(free_m, least_m);
     }
     return std::nullopt;
 }

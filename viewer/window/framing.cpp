@@ -49,7 +49,8 @@ render::MeshStyle meshStyle(const Workbench& bench) {
 
 std::optional<double> groundBelow(const Workbench& bench, Vec3d from) {
     if (!bench.shown()) return std::nullopt;
-    return render::surfaceBelow(bench.shown()->model.tape, from, static_cast<double>(bounds(bench).lo.y));
+    const double foot_m = bounds(bench).lo.y;
+    return render::surfaceBelow(bench.shown()->model.tape, from, foot_m).value_or(foot_m);
 }
 
 }  // namespace sgm::window

@@ -116,4 +116,9 @@ void Orbit::frame(const Box3d& bounds) {
     }
 }
 
+double secondsHeld(double frame_s, bool pressedNow) {
+    constexpr double shortest_s = 1.0 / 15, longest_s = 1;
+    return std::min(frame_s, pressedNow ? shortest_s : longest_s);
+}
+
 }  // namespace sgm::window

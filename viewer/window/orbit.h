@@ -42,4 +42,8 @@ struct Orbit {
     friend bool operator==(const Orbit&, const Orbit&) = default;
 };
 
+/// How long keys have moved the camera in a frame of so many seconds, at any rate of frames: the first one behind a
+/// rest is as long as the rest was, and counts as a short one.
+double secondsHeld(double frame_s, bool pressedNow);
+
 }  // namespace sgm::window
