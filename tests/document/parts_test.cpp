@@ -80,6 +80,28 @@ TEST_F(Parts, ChangePlaces) {
     expectRefused(edits::movePart(ast, row[2], 1), "no part");
 }
 
+TEST(Divisions, KeepWhatIsSaidOfTheWhole) {
+    const auto divided = [](const std::string& body, std::string_view name) {
+        const std::string text = "grammar 2\nstart A -> " + body + " // whole\n";
+        const syntax::Ast ast = parsed(text);
+        const auto edit = edits::divide(ast, ast.starts[0].body.siblings[0].back(), name);
+        if (!edit.ok()) return edit.error().message;
+        const std::string after = applied(text, *edit);
+        (void)parsed(after);
+        EXPECT_EQ(after.substr(edit->begin + edit->node.value(), 3), std::string(name).substr(0, 3)) << "selected";
+        return after.substr(21, after.find(" //") - 21);
+    };
+    EXPECT_EQ(divided("cube", "split"), "split x { ~1: cube | ~1: cube }");
+    EXPECT_EQ(divided("size 2 sphere", "split { }*"), "size 2 split x { { ~1m: sphere }* }");
+    EXPECT_EQ(divided("cube size (4, 3, 2) color #aa4422", "faces"),
+              "size (4, 3, 2) color #aa4422 faces .3m { side: cube | rest: nil }");
+    EXPECT_EQ(divided("cube + torus(.2) at +x", "row"), "cube + at +x row 3 along x { torus(.2) }");
+    for (const edits::Division& division : edits::divisions())
+        EXPECT_NE(divided("cube size 2", division.name).find("{"), std::string::npos) << division.name;
+    EXPECT_NE(divided("cube : B", "split").find("divide it in its rule"), std::string::npos);
+    EXPECT_NE(divided("cube", "size").find("doesn't divide"), std::string::npos);
+}
+
 TEST_F(Parts, TakeSizesAndCounts) {
     expectReplaced(edits::setPartLabel(ast, floors[0], "100% - 2m"), "1m: brick   //", "100% - 2m: brick   //");
     expectReplaced(edits::setPartLabel(ast, window[1], "~3"), "~2: glass", "~3: glass");

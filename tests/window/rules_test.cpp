@@ -73,6 +73,37 @@ TEST_F(Rules, TextAndShapesAreOneSelection) {
     EXPECT_TRUE(has("edit.solid"));
 }
 
+TEST_F(Rules, WordsArePicked) {
+    const std::string before =
+        "grammar 2\nmaterial oak color #885522\nstart A -> cube size 2 of oak + sphere color #aa5533 at +x\n";
+    openText(before);
+    click("rule.3.+ sphere");
+    click("solid.words");
+    EXPECT_TRUE(has("solid.words.torus"));
+    click("solid.words.cylinder");
+    EXPECT_EQ(text(), replaced(before, "sphere", "cylinder"));
+    click("attribute.add");
+    click("attribute.add.rough");
+    EXPECT_EQ(text(), replaced(before, "sphere color #aa5533 at +x", "cylinder color #aa5533 at +x rough .8"));
+    while (state()["undo"] != "") key("ctrl+z");
+    click("rule.3.cube");
+    click("of.words");
+    EXPECT_TRUE(has("of.words.oak"));
+    click("of.words.oak");
+    click("attribute.add");
+    click("attribute.add.split");
+    EXPECT_EQ(text(), replaced(before, "cube size 2 of oak", "size 2 of oak split x { ~1: cube | ~1: cube }"));
+    EXPECT_TRUE(has("part.1.size")) << "its parts are there to be changed";
+    key("ctrl+z");
+    // A colour that is dragged in its swatch is one entry.
+    click("rule.3.+ sphere");
+    click("swatch.color");
+    const auto [x, y] = placeOf("swatch.color", .5, .5);
+    for (const int by : {40, 70}) dragTo("swatch.color", x + by, y + 60);
+    key("Escape");
+    EXPECT_EQ(state()["undo"], "Change color");
+}
+
 TEST_F(Rules, RulesAndStartsAreAdded) {
     openText("grammar 2\nstart House -> cube size 2\nrule A -> + cone at +y\n");
     fill("rule.new", "B -> + torus at +y");

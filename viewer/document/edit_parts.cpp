@@ -1,6 +1,8 @@
 // Edits of the parts of a block: what stands between the bars of a split, of faces or of a choice.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "viewer/document/nodes.h"
 
 namespace sgm::document::edits {
@@ -145,6 +147,37 @@ Edit setPartTimes(const Ast& ast, const Case& part, std::string_view times) {
         written = *count;
     }
     return tried(ast, {brace, part.span.end, written});
+}
+
+std::span<const Division> divisions() {
+    static constexpr Division all[] = {
+        {"split", "split x { ~1: S | ~1: S }", "Cuts the scope along an axis into parts of given sizes"},
+        {"split { }*", "split x { { ~1m: S }* }", "Cuts the scope into parts of one size, as many as fit"},
+        {"faces", "faces .3m { side: S | rest: nil }",
+         "Plates along the sides of a block, each with a body of its own"},
+        {"row", "row 3 along x { S }", "Copies in a row"},
+        {"around", "around 6 radius 2m { S }", "Copies around the middle"},
+        {"mirror { }", "mirror x { S }", "It and its reflection"},
+    };
+    return all;
+}
+
+Edit divide(const Ast& ast, const Element& element, std::string_view name) {
+    const auto all = divisions();
+    const auto division = std::find_if(all.begin(), all.end(), [&](const Division& d) { return d.name == name; });
+    if (division == all.end()) return refused(fmt::format("'{}' doesn't divide a shape", name));
+    if (!element.solid) return refused("there is no shape that could be divided");
+    if (!element.live.empty())
+        return refused(fmt::format("'{}' goes on with it: divide it in its rule", element.live.text));
+    std::string written;
+    for (const char c : std::string_view(division->text))
+        c == 'S' ? written += element.solid->span.text() : written += c;
+    const syntax::SourceSpan solid = element.solid->span;
+    if (element.after.empty()) return tried(ast, {solid.begin, solid.end, std::move(written), 0});
+    // The attributes go before it: all of them then stand before no shape.
+    const uint32_t next = tokenFrom(ast, solid.end).begin;
+    return tried(ast, merged(ast.source->text(),
+                             {{solid.begin, next, {}}, {element.span.end, element.span.end, " " + written, 1}}));
 }
 
 }  // namespace sgm::document::edits

@@ -5,6 +5,7 @@
 // asked for. What a text means is for `check` to judge: a rule for an unknown shape can be written.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -95,6 +96,16 @@ Edit setPartLabel(const Ast& ast, const Case& part, std::string_view label);
 Edit setPartTimes(const Ast& ast, const Case& part, std::string_view times);
 /// The parts among which this one stands; null where it isn't one of the tree.
 const std::vector<Case>* partsAround(const Ast& ast, const Case& part);
+/// A way to divide a shape's scope into parts, or to repeat it.
+struct Division {
+    const char* name;  ///< "split { }*"
+    const char* text;  ///< as it is written, S for the shape: "split x { { ~1m: S }* }"
+    const char* doc;
+};
+std::span<const Division> divisions();
+/// The shape becomes parts of its scope, each with the shape in it; its attributes stay those of the whole. Refused for
+/// a shape that rules go on with.
+Edit divide(const Ast& ast, const Element& element, std::string_view division);
 /// A part that fits the block of an attribute: "~1: cube" in a split, "1: cube" in a choice (null).
 std::string samplePart(const syntax::Attribute* attribute);
 

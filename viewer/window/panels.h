@@ -84,6 +84,7 @@ private:
     void elementInspector(Workbench& bench, const document::RuleRow& row);
     void elementButtons(Workbench& bench, const syntax::Element& element);
     void attributes(Workbench& bench, const syntax::Element& element);
+    void addAttribute(Workbench& bench, const syntax::Element& element);
     size_t selectedRow(Workbench& bench);
     // In rule_parts.cpp:
     void partInspector(Workbench& bench, const syntax::Case& part);
@@ -92,6 +93,9 @@ private:
     /// An operation that divides the scope: what stands before its braces, and its parts.
     void divisionInspector(Workbench& bench, const document::RuleRow& row);
     void blockInspector(Workbench& bench, const std::vector<syntax::Case>& parts, const syntax::Attribute* attribute);
+    /// What stands before an attribute's field: a swatch for a colour, a list for a material.
+    void argumentHelp(Workbench& bench, const syntax::Attribute& attribute,
+                      const std::function<document::edits::Edit(const std::string&)>& set);
     void addPart(Workbench& bench, const syntax::Case& after, const syntax::Attribute* attribute);
     /// A field of `width` pixels, 0 for what is left; the edit is made when it is left, changed.
     void partField(Workbench& bench, const std::string& id, const std::string& value, float width,

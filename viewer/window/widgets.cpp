@@ -87,6 +87,38 @@ bool choice(Report& report, const std::string& name, std::span<const std::string
     return changed;
 }
 
+bool pick(Report& report, const std::string& name, const char* label,
+          const std::function<std::vector<document::ListedWord>()>& words, std::string& picked) {
+    ImGui::PushID(name.c_str());
+    const bool opens = ImGui::Button(label);
+    if (!ImGui::IsPopupOpen("words")) report.mark(name);
+    if (opens) ImGui::OpenPopup("words");
+    bool chosen = false;
+    if (ImGui::BeginPopup("words")) {
+        const float width = ImGui::GetFontSize() * 24, left = ImGui::GetCursorScreenPos().x;
+        std::string group;
+        for (const document::ListedWord& word : words()) {
+            const float needed = ImGui::CalcTextSize(word.name.c_str()).x + 2 * ImGui::GetStyle().FramePadding.x;
+            if (word.group != group) {
+                if (!group.empty()) ImGui::NewLine();
+                faint(group = word.group);
+            } else if (ImGui::GetCursorScreenPos().x + needed > left + width) {
+                ImGui::NewLine();
+            }
+            if (quietButton(report, name + "." + word.name, word.name.c_str(),
+                            word.doc.empty() ? nullptr : word.doc.c_str())) {
+                picked = word.name;
+                chosen = true;
+                ImGui::CloseCurrentPopup();
+            }
+            ImGui::SameLine(0, 0);
+        }
+        ImGui::EndPopup();
+    }
+    ImGui::PopID();
+    return chosen;
+}
+
 bool field(Report& report, const std::string& name, std::string& text, const char* empty, float width) {
     ImGui::SetNextItemWidth(width > 0 ? width : -FLT_MIN);
     ImGui::PushID(name.c_str());

@@ -2,9 +2,12 @@
 // Enters: a report and a name such as "bar.save". Leaves: what was pressed. Assumes a frame of ImGui.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "viewer/document/word_lists.h"
 #include "viewer/window/report.h"
 
 namespace sgm::window::widgets {
@@ -21,6 +24,10 @@ bool oneOf(Report& report, const std::string& name, std::span<const char* const>
 bool toggle(Report& report, const std::string& name, const char* label, bool& value, const char* hint = nullptr);
 /// A combo box of `width` pixels (0: what is left). Its items are reported as NAME.ITEM while it is open.
 bool choice(Report& report, const std::string& name, std::span<const std::string> items, int& value, float width = 0);
+/// A button that opens the words in their groups, those of a group side by side, each explained while the pointer rests
+/// on it; they are reported as NAME.WORD while it is open. True when one was picked.
+bool pick(Report& report, const std::string& name, const char* label,
+          const std::function<std::vector<document::ListedWord>()>& words, std::string& picked);
 /// A line of text; true when it was ended with Enter or left, changed.
 bool field(Report& report, const std::string& name, std::string& text, const char* hint = nullptr, float width = 0);
 /// Enter was pressed in the field just made: it presses the button that belongs to the field.

@@ -1,9 +1,10 @@
-// The Rules panel's fields for what divides a scope: a split or its like, and its parts.
+// The Rules panel's fields for what divides a scope, a split or its like and its parts, and helps to fill fields.
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "viewer/window/panels.h"
 #include "viewer/window/style.h"
@@ -28,6 +29,12 @@ std::string timesOf(const Case& part) {
     return part.times ? std::string(part.times->span.text()) : part.atLeastOnce ? "+" : "*";
 }
 
+/// "#rrggbb" of sRGB shares.
+std::string hexOf(const float (&rgb)[3]) {
+    const auto byte = [](float v) { return static_cast<int>(std::lround(v * 255)); };
+    return fmt::format("#{:02x}{:02x}{:02x}", byte(rgb[0]), byte(rgb[1]), byte(rgb[2]));
+}
+
 std::string bodyOf(const Case& part) { return part.body ? std::string(part.body->span.text()) : std::string(); }
 
 }  // namespace
@@ -45,6 +52,33 @@ void RulesPanel::partField(Workbench& bench, const std::string& id, const std::s
         holding_.clear();
     }
     if (done && text != value) bench.edit(commit(text), label);
+}
+
+void RulesPanel::argumentHelp(Workbench& bench, const syntax::Attribute& attribute,
+                              const std::function<Edit(const std::string&)>& set) {
+    if (attribute.args.empty()) return;
+    const syntax::Expr& written = attribute.args[0];
+    const bool isMaterial = attribute.operation->arguments[0].type == syntax::ArgumentType::Material;
+    if (attribute.args.size() == 1 && written.kind == syntax::Expr::Kind::Color) {
+        const auto bits = static_cast<uint32_t>(written.number);
+        float rgb[3];
+        for (int i = 0; i < 3; ++i) rgb[i] = static_cast<float>(bits >> (16 - 8 * i) & 255) / 255;
+        ImGui::PushID(attribute.name.text.c_str());
+        const bool changed = ImGui::ColorEdit3("##swatch", rgb, ImGuiColorEditFlags_NoInputs);
+        ImGui::PopID();
+        bench.report.mark("swatch." + attribute.name.text);
+        if (ImGui::IsItemActivated()) bench.document.beginDrag();
+        if (changed) bench.edit(set(hexOf(rgb)), fmt::format("Change {}", attribute.name.text));
+        if (ImGui::IsItemDeactivated()) bench.document.endDrag();
+        ImGui::SameLine();
+    } else if (isMaterial) {
+        std::string word;
+        if (pick(
+                bench.report, attribute.name.text + ".words", "…",
+                [&] { return document::materialWords(bench.shown() ? bench.shown()->grammar.get() : nullptr); }, word))
+            bench.edit(set(word), fmt::format("Change {}", attribute.name.text));
+        ImGui::SameLine();
+    }
 }
 
 void RulesPanel::removePart(Workbench& bench, const Case& part) {

@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "grammar/operations/operations.h"
+#include "viewer/document/word_lists.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/selecting.h"
 #include "viewer/window/style.h"
@@ -57,7 +58,7 @@ std::string firstArgument(std::string_view text) {
 }
 
 void label(const char* text, float& left) {
-    left = ImGui::GetCursorPosX() + ImGui::GetFontSize() * 5;
+    left = ImGui::GetCursorStartPos().x + ImGui::GetFontSize() * 5;
     ImGui::AlignTextToFramePadding();
     faint(text);
     ImGui::SameLine(left);
@@ -284,7 +285,18 @@ void RulesPanel::elementInspector(Workbench& bench, const document::RuleRow& row
         partButtons(bench, *whole);
     else
         elementButtons(bench, element);
+    if (element.kind == Element::Kind::Shape || element.kind == Element::Kind::Group) {
+        ImGui::SameLine();
+        addAttribute(bench, element);
+    }
     if (element.kind == Element::Kind::Shape && element.solid) {
+        std::string word;
+        if (pick(
+                bench.report, "solid.words", "…",
+                [&] { return document::placeableWords(bench.shown() ? bench.shown()->grammar.get() : nullptr); }, word))
+            bench.edit(document::edits::setSolid(ast, element, word), "Change solid");
+        hint("Solids, terminals and shapes with rules");
+        ImGui::SameLine();
         part(bench, "solid", textOf(element.solid),
              [&](const std::string& t) { return document::edits::setSolid(ast, element, t); });
         part(bench, "live", element.live.text,
@@ -334,29 +346,31 @@ void RulesPanel::attributes(Workbench& bench, const Element& element) {
             bench.edit(document::edits::setAttribute(ast, element, operations::at, joints[size_t(joint)]),
                        fmt::format("Join at {}", joints[size_t(joint)]));
     }
-    std::vector<std::string> more{"Add …"};
     for (const Operation* row : ast.operations->rows()) {
         const Operation& operation = *row;
-        if (operation.hasBlock()) continue;
-        const syntax::Attribute* there = find(operation);
-        if (!there) {
-            if (operation.arguments.empty()) continue;
-            more.emplace_back(operation.name);
-            continue;
-        }
+        const syntax::Attribute* there = operation.hasBlock() ? nullptr : find(operation);
+        if (!there) continue;
         const std::string name(operation.name);
-        part(bench, name.c_str(), argumentsOf(*there), [&](const std::string& t) {
+        const auto set = [&](const std::string& t) {
             return t.empty() ? document::edits::removeAttribute(ast, element, operation)
                              : document::edits::setAttribute(ast, element, operation, t);
-        });
+        };
+        argumentHelp(bench, *there, set);
+        part(bench, name.c_str(), argumentsOf(*there), set);
         hint(std::string(operation.doc).c_str());
     }
-    float left = 0;
-    label("more", left);
-    int chosen = 0;
-    if (!choice(bench.report, "attribute.add", more, chosen)) return;
+}
+
+void RulesPanel::addAttribute(Workbench& bench, const Element& element) {
+    const syntax::Ast& ast = *listed_;
+    std::string chosen;
+    if (!pick(
+            bench.report, "attribute.add", "Add …", [&] { return document::attributeWords(ast, element); }, chosen))
+        return;
+    if (!ast.operations->find(chosen) || ast.operations->find(chosen)->hasBlock())
+        return bench.edit(document::edits::divide(ast, element, chosen), fmt::format("Add {}", chosen));
     // The row's own example shows how its argument is written.
-    const Operation& operation = *ast.operations->find(more[size_t(chosen)]);
+    const Operation& operation = *ast.operations->find(chosen);
     std::string_view example = operation.example;
     const size_t from = example.find(operation.name);
     example = from == std::string_view::npos ? std::string_view("1") : example.substr(from + operation.name.size());
