@@ -4,6 +4,8 @@
 namespace sgm::document {
 namespace {
 
+using syntax::Element;
+
 constexpr const char* bay =
     "grammar 2\n"
     "start Front -> size (9, 3, .3) Row\n"
@@ -78,6 +80,32 @@ TEST_F(Parts, ChangePlaces) {
     EXPECT_EQ(nodeOf(edits::movePart(ast, floors[2], -1)), "20%: bric");
     expectRefused(edits::movePart(ast, row[0], -1), "no part");
     expectRefused(edits::movePart(ast, row[2], 1), "no part");
+}
+
+TEST(Parameters, AreAddedAndMadeOfNumbers) {
+    const std::string text =
+        "grammar 2\n\nstart A -> cube size (9, 3, 50%) turn 30deg : B // whole\nrule B -> + sphere at +y\n";
+    const syntax::Ast ast = parsed(text);
+    const auto after = [&](const edits::Edit& edit) { return edit.ok() ? applied(text, *edit) : edit.error().message; };
+    EXPECT_EQ(after(edits::addParameter(ast, "wide = 2m in 1m..4m")),
+              replaced(text, "grammar 2\n", "grammar 2\nparam wide = 2m in 1m..4m\n"));
+    EXPECT_NE(after(edits::addParameter(ast, "wide 2m")), "");
+    EXPECT_FALSE(edits::addParameter(ast, "wide 2m").ok());
+    EXPECT_FALSE(edits::addParameter(ast, "a = 1\nrule C -> cube").ok());
+    EXPECT_FALSE(edits::addParameter(parsed("grammar 2\nparam a = 1\nstart A -> cube\n"), "a = 2").ok());
+    const Element& cube = ast.starts[0].body.siblings[0][0];
+    const auto& size = cube.after[0].args[0].args;
+    EXPECT_EQ(after(edits::makeParameter(ast, size[0], "wide", edits::Quantity::Metres)),
+              replaced(replaced(text, "(9,", "(wide,"), "grammar 2\n", "grammar 2\nparam wide = 9m in 4.5m..18m\n"));
+    EXPECT_EQ(after(edits::makeParameter(ast, size[2], "deep", edits::Quantity::Metres)),
+              replaced(replaced(text, "50%", "deep"), "grammar 2\n", "grammar 2\nparam deep = 50% in 25%..100%\n"));
+    EXPECT_EQ(after(edits::makeParameter(ast, size[1], "n", edits::Quantity::Count)),
+              replaced(replaced(text, " 3,", " n,"), "grammar 2\n", "grammar 2\nparam n = 3 in 1..6\n"));
+    const std::string taken = "grammar 2\nparam n = 1.0\nstart A -> cube size 2\n";
+    const syntax::Ast other = parsed(taken);
+    EXPECT_EQ(applied(taken, *edits::makeParameter(other, other.starts[0].body.siblings[0][0].after[0].args[0], "n",
+                                                   edits::Quantity::Real)),
+              "grammar 2\nparam n = 1.0\nparam n2 = 2.0 in 1.0..4.0\nstart A -> cube size n2\n");
 }
 
 TEST(Divisions, KeepWhatIsSaidOfTheWhole) {

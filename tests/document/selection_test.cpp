@@ -101,6 +101,24 @@ TEST_F(Selections, WaitForTheModelOfTheText) {
     EXPECT_NE(selection.takeNotice(), "") << "it says that there is none";
 }
 
+TEST(FollowedNodes, AreFoundBehindEditsThatBeginBeforeThem) {
+    const std::string before = "head cube size (9, 3) tail";
+    const TextRange cube{5, 21};
+    const auto after = [&](const TextEdit& edit) -> std::string {
+        const auto now = followed(cube, before, edit);
+        return now ? applied(before, edit).substr(now->begin, 9) : "gone";
+    };
+    EXPECT_EQ(after({0, 0, "more "}), "cube size");
+    EXPECT_EQ(after({16, 17, "wide"}), "cube size");
+    EXPECT_EQ(after({4, 17, "er param\nhead cube size (wide"}), "cube size") << "a line above and a number in it";
+    EXPECT_EQ(after({16, 26, "wide, 3) end"}), "cube size") << "a number in it, and what follows";
+    EXPECT_EQ(after({0, 26, "tail cube size (9, 3) head"}), "cube size") << "moved with all around it";
+    EXPECT_EQ(after({10, 26, "side (9, 3) end"}), "cube side") << "changed near its begin, and what follows";
+    EXPECT_EQ(after({7, 26, "ne"}), "gone");
+    EXPECT_EQ(after({5, 21, ""}), "gone");
+    EXPECT_EQ(after({0, 26, "nothing"}), "gone");
+}
+
 TEST_F(Selections, GoWithWhatIsAddedOrMoved) {
     const syntax::Ast& ast = *document.ast();
     const auto added = edits::addRule(ast, "Arm", "+ torus at -z", &ast.rules[0]);

@@ -104,6 +104,21 @@ TEST_F(Rules, WordsArePicked) {
     EXPECT_EQ(state()["undo"], "Change color");
 }
 
+TEST_F(Rules, ParametersAreMade) {
+    openText("grammar 2\nstart House -> cube size (9, 3, .5)\n");
+    fill("param.new", "tall = 4m in 1m..9m");
+    click("param.add");
+    EXPECT_EQ(text(), "grammar 2\nparam tall = 4m in 1m..9m\nstart House -> cube size (9, 3, .5)\n");
+    click("rule.3.cube");
+    click("size.parameter");
+    click("size.parameter.9");
+    EXPECT_EQ(text(),
+              "grammar 2\nparam tall = 4m in 1m..9m\nparam houseSize = 9m in 4.5m..18m\n"
+              "start House -> cube size (houseSize, 3, .5)\n");
+    until("its slider", [&](const auto&) { return has("param.houseSize"); });
+    EXPECT_TRUE(has("edit.size")) << "the shape is still selected";
+}
+
 TEST_F(Rules, RulesAndStartsAreAdded) {
     openText("grammar 2\nstart House -> cube size 2\nrule A -> + cone at +y\n");
     fill("rule.new", "B -> + torus at +y");

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "grammar/syntax/parser.h"
 #include "viewer/document/nodes.h"
 
 namespace sgm::document::edits {
@@ -163,6 +165,59 @@ Edit removeStyle(const Ast& ast, std::string_view name, std::string_view start) 
     const StyleDecl* found = exactStyle(ast, name, start);
     if (!found) return refused(fmt::format("there is no style '{}'", name));
     return tried(ast, removal(ast.source->text(), found->span.begin, found->span.end));
+}
+
+namespace {
+
+/// A line of its own behind the last parameter, or else behind the last `use`, or else behind the version.
+TextEdit parameterLine(const Ast& ast, std::string line) {
+    const std::string_view text = ast.source->text();
+    const uint32_t last = !ast.params.empty() ? ast.params.back().span.end
+                          : !ast.uses.empty() ? ast.uses.back().span.end
+                                              : tokenFrom(ast, tokenFrom(ast, 0).end).end;
+    const uint32_t end = lineEnd(text, last);
+    return {end, end, "\n" + std::move(line)};
+}
+
+bool isParameter(const Ast& ast, std::string_view name) {
+    return std::any_of(ast.params.begin(), ast.params.end(), [&](const ParamDecl& p) { return p.name.text == name; });
+}
+
+/// "1.5", ".75", and "2.0" for a number that isn't counted.
+std::string numberText(double value, Quantity quantity) {
+    std::string text = fmt::format("{:.4g}", value);
+    if (text.substr(0, 2) == "0.") text.erase(0, 1);
+    const bool whole = text.find_first_of(".e") == std::string::npos;
+    return quantity == Quantity::Real && whole ? text + ".0" : text;
+}
+
+}  // namespace
+
+Edit addParameter(const Ast& ast, std::string_view written) {
+    syntax::Diagnostics problems;
+    const syntax::Ast alone = syntax::parse(
+        std::make_shared<const syntax::Source>("param", fmt::format("grammar {}\nparam {}\n", ast.version, written)),
+        *ast.operations, problems);
+    if (problems.hasErrors()) return refused(problems.all()[0].message);
+    if (alone.params.size() != 1 || written.find('\n') != std::string_view::npos)
+        return refused("write 'name = value in least..most'");
+    if (isParameter(ast, alone.params[0].name.text))
+        return refused(fmt::format("there is a parameter '{}' already", alone.params[0].name.text));
+    return tried(ast, parameterLine(ast, fmt::format("param {}", written)));
+}
+
+Edit makeParameter(const Ast& ast, const syntax::Expr& number, std::string_view name, Quantity quantity) {
+    if (number.kind != syntax::Expr::Kind::Number || !(number.number > 0))
+        return refused("only a number above 0 becomes a parameter");
+    const std::string unit = number.unit.empty() && quantity == Quantity::Metres ? "m" : number.unit;
+    if (!unit.empty()) quantity = Quantity::Metres;  // a unit says that it isn't counted
+    std::string called(name);
+    for (int i = 2; isParameter(ast, called); ++i) called = fmt::format("{}{}", name, i);
+    const double least = quantity == Quantity::Count ? std::max(1.0, std::floor(number.number / 2)) : number.number / 2;
+    const auto text = [&](double value) { return numberText(value, quantity) + unit; };
+    const TextEdit line = parameterLine(
+        ast, fmt::format("param {} = {} in {}..{}", called, text(number.number), text(least), text(2 * number.number)));
+    return tried(ast, merged(ast.source->text(), {line, over(number.span, called)}));
 }
 
 }  // namespace sgm::document::edits

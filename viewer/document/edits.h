@@ -122,6 +122,13 @@ struct NamedValue {
 Edit setValues(const Ast& ast, std::string_view start, std::string_view style, const std::vector<NamedValue>& values);
 /// A style with these values: "style NAME for START { … }", in place of the one of that name, or behind the last one.
 Edit saveStyle(const Ast& ast, std::string_view name, std::string_view start, const std::vector<NamedValue>& values);
+/// A new parameter as it is written, "width = 8m in 4m..20m": behind the last one, or else behind what is used.
+Edit addParameter(const Ast& ast, std::string_view written);
+/// What a number that becomes a parameter counts: a bare number of metres gets its unit.
+enum class Quantity { Count, Real, Metres };
+/// A number of the text becomes a parameter of this name, or the next free one, which ranges from its half to its
+/// double.
+Edit makeParameter(const Ast& ast, const syntax::Expr& number, std::string_view name, Quantity quantity);
 /// Takes a setting out of a style, so that the default counts again.
 Edit removeSetting(const Ast& ast, std::string_view start, std::string_view style, std::string_view param);
 Edit removeStyle(const Ast& ast, std::string_view name, std::string_view start);

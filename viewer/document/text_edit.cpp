@@ -48,11 +48,23 @@ std::optional<TextRange> followed(TextRange node, std::string_view before, const
     if (edit.begin >= node.begin && edit.end <= node.end &&
         !(edit.replacement.empty() && edit.end == node.end && edit.begin == node.begin))
         return TextRange{node.begin, node.end + grown};
-    const std::string_view text = before.substr(node.begin, node.end - node.begin);
-    const size_t again = text.empty() ? std::string::npos : edit.replacement.find(text);
-    if (again == std::string::npos) return std::nullopt;
-    const uint32_t begin = edit.begin + static_cast<uint32_t>(again);
-    return TextRange{begin, begin + static_cast<uint32_t>(text.size())};
+    if (edit.begin > node.begin) {  // its first bytes stay: is it still itself?
+        const uint32_t middle = std::max(edit.begin, node.begin + (node.end - node.begin) / 2);
+        const bool kept = edit.begin == middle ||
+                          edit.replacement.find(before.substr(middle, node.end - middle)) != std::string::npos;
+        return kept ? std::optional(TextRange{node.begin, edit.begin}) : std::nullopt;
+    }
+    // The edit begins before the node: what it leaves of the node's first bytes is found again in the replacement, near
+    // its end where the node goes on behind it.
+    const std::string_view text = before.substr(node.begin, std::min(node.end, edit.end) - node.begin);
+    for (size_t bytes = text.size(); bytes > 0 && 2 * bytes >= text.size(); --bytes) {
+        const std::string_view head = text.substr(0, bytes);
+        const size_t again = node.end > edit.end ? edit.replacement.rfind(head) : edit.replacement.find(head);
+        if (again == std::string::npos) continue;
+        const uint32_t begin = edit.begin + static_cast<uint32_t>(again);
+        return TextRange{begin, begin + static_cast<uint32_t>(bytes)};
+    }
+    return std::nullopt;
 }
 
 }  // namespace sgm::document

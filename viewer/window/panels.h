@@ -48,7 +48,9 @@ private:
     std::vector<document::ParamRow> ahead_;   ///< what was set since the shown model
     uint64_t aheadRevision_ = 0;              ///< of the document, when the last of them was
     std::optional<document::ParamRow> held_;  ///< what is dragged; the model follows it
-    std::string styleName_;
+    void newParameter(Workbench& bench);
+
+    std::string styleName_, newParameter_ = "name = 2m in 1m..4m";
     std::shared_ptr<const document::BuiltModel> reported_;  ///< what `reports_` are of
     std::vector<document::ReportRow> reports_;
     float labelShare_ = 0.46f;  ///< of a row's width
@@ -96,6 +98,9 @@ private:
     /// What stands before an attribute's field: a swatch for a colour, a list for a material.
     void argumentHelp(Workbench& bench, const syntax::Attribute& attribute,
                       const std::function<document::edits::Edit(const std::string&)>& set);
+    /// A button that makes a number of the expression a parameter; nothing where there is none above 0.
+    void parameterButton(Workbench& bench, const std::string& id, const syntax::Expr& written,
+                         document::edits::Quantity quantity);
     void addPart(Workbench& bench, const syntax::Case& after, const syntax::Attribute* attribute);
     /// A field of `width` pixels, 0 for what is left; the edit is made when it is left, changed.
     void partField(Workbench& bench, const std::string& id, const std::string& value, float width,

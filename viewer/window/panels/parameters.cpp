@@ -60,10 +60,23 @@ void ParametersPanel::show(Workbench& bench) {
             group = r.group;
             row(bench, r);
         }
+        newParameter(bench);
         reports(bench);
         styles(bench);
     }
     ImGui::EndChild();
+}
+
+void ParametersPanel::newParameter(Workbench& bench) {
+    const float width = ImGui::CalcTextSize("Add").x + 2 * ImGui::GetStyle().FramePadding.x;
+    ImGui::PushFont(codeFont());
+    field(bench.report, "param.new", newParameter_, "name = value in least..most",
+          ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
+    ImGui::PopFont();
+    hint("A parameter as it is written: 'name = value in least..most', 'name = brick of brick, stone', 'name = true'");
+    ImGui::SameLine();
+    if (button(bench.report, "param.add", "Add", "Add the parameter to the text"))
+        bench.edit(document::edits::addParameter(*bench.document.ast(), newParameter_), "Add a parameter");
 }
 
 void ParametersPanel::reports(Workbench& bench) {

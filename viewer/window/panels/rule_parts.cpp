@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include "viewer/window/panels.h"
@@ -35,6 +36,18 @@ std::string hexOf(const float (&rgb)[3]) {
     return fmt::format("#{:02x}{:02x}{:02x}", byte(rgb[0]), byte(rgb[1]), byte(rgb[2]));
 }
 
+/// The numbers above 0 in an expression, in the order of the text.
+void addNumbers(const syntax::Expr& e, std::vector<const syntax::Expr*>& numbers) {
+    if (e.kind == syntax::Expr::Kind::Number && e.number > 0) numbers.push_back(&e);
+    for (const syntax::Expr& arg : e.args) addNumbers(arg, numbers);
+}
+
+document::edits::Quantity quantityOf(syntax::ArgumentType type) {
+    using Type = syntax::ArgumentType;
+    const bool isLength = type == Type::Length || type == Type::Size || type == Type::Vector || type == Type::Point;
+    return isLength ? document::edits::Quantity::Metres : document::edits::Quantity::Real;
+}
+
 std::string bodyOf(const Case& part) { return part.body ? std::string(part.body->span.text()) : std::string(); }
 
 }  // namespace
@@ -58,6 +71,7 @@ void RulesPanel::argumentHelp(Workbench& bench, const syntax::Attribute& attribu
                               const std::function<Edit(const std::string&)>& set) {
     if (attribute.args.empty()) return;
     const syntax::Expr& written = attribute.args[0];
+    parameterButton(bench, attribute.name.text, written, quantityOf(attribute.operation->arguments[0].type));
     const bool isMaterial = attribute.operation->arguments[0].type == syntax::ArgumentType::Material;
     if (attribute.args.size() == 1 && written.kind == syntax::Expr::Kind::Color) {
         const auto bits = static_cast<uint32_t>(written.number);
@@ -79,6 +93,33 @@ void RulesPanel::argumentHelp(Workbench& bench, const syntax::Attribute& attribu
             bench.edit(set(word), fmt::format("Change {}", attribute.name.text));
         ImGui::SameLine();
     }
+}
+
+void RulesPanel::parameterButton(Workbench& bench, const std::string& id, const syntax::Expr& written,
+                                 document::edits::Quantity quantity) {
+    std::vector<const syntax::Expr*> numbers;
+    addNumbers(written, numbers);
+    if (numbers.empty()) return;
+    const auto words = [&] {
+        std::vector<document::ListedWord> list;
+        for (const syntax::Expr* number : numbers)
+            list.push_back(
+                {std::string(number->span.text()), "Make it a parameter", "A slider from its half to its double"});
+        return list;
+    };
+    std::string picked;
+    if (pick(bench.report, id + ".parameter", "P", words, picked)) {
+        const auto number = std::find_if(numbers.begin(), numbers.end(),
+                                         [&](const syntax::Expr* n) { return n->span.text() == picked; });
+        const document::RuleRow& row = rows_[selected_];
+        std::string name = row.rule ? row.rule->symbol.text : row.start->symbol.text;
+        name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+        std::string what = id.substr(id.rfind('.') + 1);
+        what[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(what[0])));
+        bench.edit(document::edits::makeParameter(*listed_, **number, name + what, quantity), "Make a parameter");
+    }
+    hint("Make a number of it a parameter with a slider");
+    ImGui::SameLine();
 }
 
 void RulesPanel::removePart(Workbench& bench, const Case& part) {
@@ -133,6 +174,10 @@ void RulesPanel::partInspector(Workbench& bench, const Case& part) {
         hint("* as often as it fits, + at least once, or a count");
         return blockInspector(bench, part.cases, attribute);
     }
+    if (part.label)
+        parameterButton(bench, "part.size", *part.label,
+                        part.label->kind == syntax::Expr::Kind::Floating ? document::edits::Quantity::Real
+                                                                         : document::edits::Quantity::Metres);
     name("size");
     partField(
         bench, "part.size", labelOf(part), 0,
