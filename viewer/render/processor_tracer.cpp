@@ -277,7 +277,7 @@ private:
 
     /// Where a walk from a hit into the light begins.
     Vec3f startOf(const Hit& hit, Vec3f normal) const {
-        return hit.position + normal * std::max(1e-4f * space().size, 0.5f * pixelAt(hit));
+        return hit.position + normal * std::max(1e-4f * space().shownSize(pixelAt(hit)), 0.5f * pixelAt(hit));
     }
     float pixelAt(const Hit& hit) const { return pixelAngle() * length(view_.eye.as<float>() - hit.position); }
 

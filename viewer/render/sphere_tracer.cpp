@@ -151,7 +151,7 @@ DiscWalk::DiscWalk(const CellSpace& space, Vec3f place, Vec3f direction, float r
       look_{radius, pixel, std::max(4e-6f * space.size, 0.05f * pixel), of == Of::Part ? 0.05f : hidden, of != Of::Sky},
       soft_(of == Of::Part) {
     const auto [near, far] = space.span(place, line_.inverse);
-    start_ = t_ = std::max({near, 3e-4f * space.size, from});
+    start_ = t_ = std::max({near, 3e-4f * space.shownSize(pixel), from});
     end_ = far;
 }
 
@@ -270,9 +270,9 @@ void DiscWalk::answer(const CellSpace& space, float value) {
     }
     const float next = std::abs(value) * space.inverseLipschitz;
     const float disc = std::min(look_.radius * (t_ + pace_.stride), space.margin),
-                least = std::max(
-                    (look_.sharp ? 0.25f : 0.5f) * disc,
-                    std::max((look_.sharp ? 2e-4f : 1e-3f) * space.size, disc < look_.pixel ? 1.4f * look_.pixel : 0));
+                least = std::max((look_.sharp ? 0.25f : 0.5f) * disc,
+                                 std::max((look_.sharp ? 2e-4f : 1e-3f) * space.shownSize(look_.pixel),
+                                          disc < look_.pixel ? 1.4f * look_.pixel : 0));
     const bool sure = !cell_.doubtful || value <= -0.25f * look_.into;
     if (look_.dark > 0 && sure && value < 0) {  // of a part no more is asked
         clearance_ = 0;

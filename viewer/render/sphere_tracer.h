@@ -4,6 +4,7 @@
 // same steps as trace.comp.glsl and surface.comp.glsl take, which say where they come from.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -43,6 +44,9 @@ struct CellSpace {
     float size = length(field.bounds.size());  ///< metres
 
     Cell cellAt(Vec3f p) const;
+    /// What steps and offsets are shares of, metres: the scene, or as much of it as a picture shows whose pixels are so
+    /// wide (shownSize in surface.comp.glsl).
+    float shownSize(float pixel) const { return std::min(size, 1500 * pixel); }
     /// Whether a guess hits the surface: by the field there times `side`, and the picture's pixel there, metres. Inside
     /// it may lie behind another face.
     bool surfaceAt(float value, float pixel) const {

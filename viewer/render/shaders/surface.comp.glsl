@@ -39,6 +39,10 @@ struct DiscSeen {
     bool soft;        // what comes into the disc is far enough away for its soft edge to be seen
 };
 
+/// What steps and offsets are shares of: the scene, or as much of it as a picture shows whose pixels are so wide, so that
+/// reliefs of a house cast shadows in a town too.
+float shownSize(float pixel) { return min(sceneSize, 1500.0 * pixel); }
+
 /// How near solid must be to tell something new, in radii of the disc.
 float matters(DiscSeen seen) { return seen.soft ? max(seen.clearance, 0.0) : 1.0; }
 
@@ -50,8 +54,8 @@ float matters(DiscSeen seen) { return seen.soft ? max(seen.clearance, 0.0) : 1.0
 DiscSeen lookAtDisc(vec3 p, vec3 direction, float radius, float pixel, int of, float from) {
     vec3 inverseDirection = inverseOf(direction);
     vec2 span = boundsSpan(p, inverseDirection);
-    float start = max(max(span.x, 3e-4 * sceneSize), from), into = max(4e-6 * sceneSize, 0.05 * pixel);
-    float dark = of == ofPart ? 0.05 : -0.9, finest = of == ofSky ? 1e-3 * sceneSize : 2e-4 * sceneSize;
+    float size = shownSize(pixel), start = max(max(span.x, 3e-4 * size), from), into = max(4e-6 * sceneSize, 0.05 * pixel);
+    float dark = of == ofPart ? 0.05 : -0.9, finest = (of == ofSky ? 1e-3 : 2e-4) * size;
     float t = start, free = 0.0, stride = 0.0, slope = -1.0, within = 0.0;
     float passed = 0.0, before = 0.0, passedStride = 0.0;  // the last values, and how far apart
     float turn = 0.0, ahead = 0.0;                         // a place beside the last one, and the value at the next
@@ -226,7 +230,7 @@ void main() {
         lits[2u * i] = vec4(normal, 0.0);
     } else {
         vec3 normal = lits[2u * i].xyz;
-        vec3 start = hit.xyz + normal * max(1e-4 * sceneSize, 0.5 * pixel);
+        vec3 start = hit.xyz + normal * max(1e-4 * shownSize(pixel), 0.5 * pixel);
         bool byDay = lampReach > 0.0 && hit.w == hitObject;
         vec2 light = sunAndDayAt(start, normal, pixel, lampReach == 0.0 || side > 0.0, byDay && side > 0.0);
         lits[2u * i] = vec4(normal, opennessAt(hit.xyz, normal, pixel));
