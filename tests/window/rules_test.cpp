@@ -122,15 +122,12 @@ TEST_F(Rules, ParametersAreMade) {
 TEST_F(Rules, RulesAndStartsAreAdded) {
     openText("grammar 2\nstart House -> cube size 2\nrule A -> + cone at +y\n");
     fill("rule.new", "B -> + torus at +y");
-    click("rule.add");
     fill("rule.new", "C -> + cube at +y");
-    click("rule.add");
     EXPECT_EQ(text(),
               "grammar 2\nstart House -> cube size 2\nrule A -> + cone at +y\nrule B -> + torus at +y\n"
               "rule C -> + cube at +y\n")
         << "each behind the one before, which is selected";
     fill("rule.new", "start Shed -> cube");
-    click("rule.add");
     EXPECT_EQ(text().substr(0, 60), "grammar 2\nstart House -> cube size 2\nstart Shed -> cube\nrule");
 }
 
