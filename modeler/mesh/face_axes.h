@@ -36,6 +36,15 @@ inline Vec3f between(Vec3f a, Vec3f b, double share) {
     return (a.as<double>() + (b - a).as<double>() * share).as<float>();
 }
 
+/// The nearest point at which a piece's field is zero.
+inline PiecePoint onSurface(const LinearField& field) {
+    PiecePoint point = field.point;
+    const Vec3d g = point.gradient.as<double>();
+    const double square = dot(g, g);
+    if (square > 0) point.at = (point.at.as<double>() - g * (field.value / square)).as<float>();
+    return point;
+}
+
 /// Moves `p` within the plane of the face to where both fields are zero; false, and `p` as it was, where their lines
 /// are parallel. `p`'s coordinate across the plane becomes that of the face on which `a` lies.
 inline bool crossInFace(const FaceAxes& plane, const LinearField& a, const LinearField& b, Vec3f& p) {

@@ -14,6 +14,7 @@ constexpr int probeRounds = 8;  ///< times that both sides of a crease are looke
 /// Of the way from a crossing to either end: where its piece is looked at, and farther where the other one is found,
 /// for the tangents of round pieces cross beyond their crease.
 constexpr float probeShare = 0.0625f, farthestProbe = 0.8f;
+constexpr float bulgeShare = 0.25f;  ///< of the way to an end: how far its piece may be from it
 float fartherThan(float share) { return std::min(4 * share, 0.5f + 0.5f * share); }
 constexpr float settledShare = 1e-4f;       ///< of a cell, within which a crease point may still move
 constexpr float endMargin = 0x1.0p-12f;     ///< of a segment, kept free of breaks at its ends
@@ -25,13 +26,11 @@ constexpr double stopShare = 0x1p-10;       ///< of a cell, between a crossing a
 constexpr float thirdShare = 0.5f;          ///< of the field expected outside a third piece: how far it may be off
 constexpr float confirmShare = 0.0625f;     ///< of a cell times the slope: the field beside a confirmed crossing
 
-/// The nearest point at which a piece's field is zero.
-PiecePoint onSurface(const LinearField& field) {
-    PiecePoint point = field.point;
-    const Vec3d g = point.gradient.as<double>();
-    const double square = dot(g, g);
-    if (square > 0) point.at = (point.at.as<double>() - g * (field.value / square)).as<float>();
-    return point;
+/// Whether a point looked at on the way to `end` lies near that one's piece, on the same side of it: within the solid,
+/// in seams between parts and in thin sheets, a piece shows with its derivative turned round.
+bool isNearPiece(const PiecePoint& point, float value, const PiecePoint& end) {
+    return point.label == end.label && dot(point.gradient, end.gradient) > 0 &&
+           std::abs(value) <= bulgeShare * length(point.gradient) * length(end.at - point.at);
 }
 
 /// Whether each break lies farther along the segment than the one before: then the way over them can't cross itself.
@@ -302,7 +301,7 @@ void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t samp
         const bool goesOn = isOther && gap.shares[side] < farthestProbe;
         gap.shares[side] = goesOn ? fartherThan(gap.shares[side]) : probeShare;
         looksFarther |= goesOn;
-        if (isFar && (isOther || !isKnown(value) || probe.label != (side == 0 ? gap.a : gap.b).label)) continue;
+        if (isFar && (!isKnown(value) || !isNearPiece(probe, value, side == 0 ? gap.a : gap.b))) continue;
         if (!isKnown(value)) {
             known = false;
         } else if (probe.label == gap.a.label) {
