@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -73,11 +74,34 @@ const Value* stored(const Expr& expr, const Place& place) {
     }
 }
 
+/// A computed range whose ends are the wrong way round: an error, as written numbers are to the checker; in grammar 1 a
+/// warning.
+void refuseBackwards(const Expr& range, const Place& place) {
+    if (!place.builder) return;
+    std::string message = "the range runs backwards: it is " + rules::toText(evaluate(range.args[0], place)) + ".." +
+                          rules::toText(evaluate(range.args[1], place)) + " here";
+    const std::string a(range.args[0].span.text()), b(range.args[1].span.text());
+    std::string hint = "'min(" + a + ", " + b + ")..max(" + a + ", " + b + ")' takes its ends either way round";
+    if (rules::versionOf(*place.builder->derivation().grammar, range.span) >= 2)
+        place.builder->monitor().fail(Error::Kind::Input, message, range.span, hint.c_str());
+    else
+        place.builder->warn(range.span, std::move(message), std::move(hint));
+}
+
+/// Whether the ends are the wrong way round by more than rounding.
+bool runsBackwards(double lo, double hi) { return lo - hi > 1e-9 * std::max(1.0, std::abs(lo)); }
+
+/// A number between the ends, which may be equal.
+double drawnBetween(double lo, double hi, const Expr& range, const Place& place, uint64_t component) {
+    if (runsBackwards(lo, hi)) refuseBackwards(range, place);
+    return uniform(drawKey(range, place, component), lo, hi);
+}
+
 Value drawn(const Expr& expr, const Place& place) {
     const Value lo = evaluate(expr.args[0], place), hi = evaluate(expr.args[1], place);
     Value r = rules::interpolate(lo, hi, 0);
     for (uint8_t i = 0; i < r.count; ++i)
-        r.n[i] = uniform(drawKey(expr, place, i), lo.n[lo.count > 1 ? i : 0], hi.n[hi.count > 1 ? i : 0]);
+        r.n[i] = drawnBetween(lo.n[lo.count > 1 ? i : 0], hi.n[hi.count > 1 ? i : 0], expr, place, i);
     return r;
 }
 
@@ -258,7 +282,7 @@ double number(const Expr& expr, const Place& place) {
             return a + (b - a) * place.ramp;
         }
         case Kind::Range:
-            return uniform(drawKey(expr, place, 0), number(expr.args[0], place), number(expr.args[1], place));
+            return drawnBetween(number(expr.args[0], place), number(expr.args[1], place), expr, place, 0);
         case Kind::Choose:
             return number(chosen(expr, place), place);
         case Kind::Unary:
@@ -290,7 +314,9 @@ uint32_t drawByWeight(std::span<const double> weights, uint64_t key) {
 double wholeNumber(const Expr& expr, const Place& place) {
     if (expr.kind == Kind::Choose) return wholeNumber(chosen(expr, place), place);
     if (expr.kind != Kind::Range) return std::floor(number(expr, place) + 1e-9);
-    const double lo = std::ceil(number(expr.args[0], place)), hi = std::floor(number(expr.args[1], place));
+    const double from = number(expr.args[0], place), to = number(expr.args[1], place);
+    if (runsBackwards(from, to)) refuseBackwards(expr, place);
+    const double lo = std::ceil(from), hi = std::floor(to);
     if (hi <= lo) return lo;
     return lo + std::floor(uniform(drawKey(expr, place, 0)) * (hi - lo + 1));
 }

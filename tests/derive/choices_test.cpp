@@ -59,5 +59,23 @@ TEST(Choices, NothingToDrawIsALocatedError) {
                 "test.sgm:4:15: every rule for 'A' that matches has weight 0");
 }
 
+TEST(Choices, AComputedRangeThatRunsBackwardsIsALocatedError) {
+    const auto failure = [](const std::string& start) {
+        const auto d = tryDerive("grammar 2\nparam n = 9m in 5m..20m\nstart S -> cube size " + start + "\n");
+        return d.ok() ? std::string() : d.error().message;
+    };
+    const auto expectError = [&](const std::string& start, const std::string& text) {
+        EXPECT_NE(failure(start).find(text), std::string::npos) << failure(start);
+    };
+    expectError("(1m, n..3m, 1m)", "test.sgm:3:27: the range runs backwards: it is 9m..3m here");
+    expectError("(1m, (2 * n)..(n + 1m), 1m)", "test.sgm:3:27: the range runs backwards: it is 18m..10m here");
+    expectError("n..3m", "test.sgm:3:22: the range runs backwards: it is 9m..3m here");
+    EXPECT_EQ(failure("(1m, 3m..n, 1m)"), "");
+    EXPECT_EQ(failure("(1m, n..9m, 1m)"), "") << "one value";
+    EXPECT_EQ(failure("(1m, min(n, 3m)..max(n, 3m), 1m)"), "") << "the fix";
+    EXPECT_EQ(warningsOf(derived("grammar 1\nparam n = 9 in 5..20\nstart S -> cube size (1m, n..3m, 1m)\n")),
+              "3:27 the range runs backwards: it is 9..3m here\n");
+}
+
 }  // namespace
 }  // namespace sgm
