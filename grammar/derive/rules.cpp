@@ -66,6 +66,19 @@ void warnOfStop(TreeBuilder& builder, const Rule& rule, double done, double step
                  fmt::format("write ': {}' behind the newcomer that the next step grows on", name));
 }
 
+/// A chain whose steps each put something in the place of what the one before made: the last one alone is left.
+void warnOfReplacing(TreeBuilder& builder, const Rule& rule, double steps) {
+    const std::string& name = builder.derivation().grammar->symbols[rule.symbol].name;
+    builder.warn(
+        rule.repeat->span,
+        fmt::format("each of the {:g} steps replaces what the one before made, so the last alone is left: none "
+                    "of its newcomers is a '{}' from which the next step could go on",
+                    steps, name),
+        fmt::format("begin the body with '+' to grow on what stands, or write ': {}' behind what the next "
+                    "step goes on from",
+                    name));
+}
+
 }  // namespace
 
 Interpreter::Interpreter(TreeBuilder& builder, std::span<const rules::Value> params)
@@ -196,6 +209,7 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
             if (i > 1 && host == root) warnOfStop(builder_, rule, i - 1, steps);
             break;
         }
+        if (!rule.body.grows && i == 2 && host == root) warnOfReplacing(builder_, rule, steps);
         if (!rule.body.grows) builder_.clearContent(host), builder_.tree().shapes.record(host).live = false;
         state.ownSymbol = false;
         if (!runLogged(rule.body, frame,

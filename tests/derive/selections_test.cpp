@@ -130,6 +130,16 @@ TEST(Selections, AChainWhoseNewcomerHasNoNameIsTold) {
     EXPECT_EQ(told("start A -> cube size 3 : B\nrule B repeat 3 -> + cube size 1 at free(+x, -x, +z)\n"), "");
 }
 
+TEST(Selections, AChainWhoseStepsReplaceEachOtherIsTold) {
+    EXPECT_EQ(
+        told("start A -> cube size 3 : B\nrule B repeat 3 -> sphere\n"),
+        "3:15 each of the 3 steps replaces what the one before made, so the last alone is left: none of its "
+        "newcomers is a 'B' from which the next step could go on; begin the body with '+' to grow on what stands, "
+        "or write ': B' behind what the next step goes on from\n");
+    EXPECT_EQ(told("start A -> cube size 3 : B\nrule B repeat 3 -> sphere size 90% : B\n"), "");
+    EXPECT_EQ(told("start A -> cube size 3 : B\nrule B repeat 1 -> sphere\n"), "");
+}
+
 TEST(Selections, ABodyWhoseJointsAreAllClosedIsTold) {
     EXPECT_EQ(told("start A -> cube size 2 : H\nrule H -> + cube size 1 at +y : K\nrule K -> + sphere size 1 at -y\n"),
               "4:11 another shape has closed its joint, so this grows nowhere; choose another joint of ours, 'at "
