@@ -125,11 +125,14 @@ syntax::Diagnostics ungrown(const Derivation& derivation);
 /// lies beside what does. Boxes decide, so that a cutter that only its box lets touch its host isn't told.
 syntax::Diagnostics uncut(const Derivation& derivation);
 
+/// A warning for every look of a group, a part or a shape with rules that no solid in it has, since all have their own.
+syntax::Diagnostics unseenLooks(const Derivation& derivation);
+
 /// A warning for every symbol of which a shape stays empty since no guard of its rules holds there.
 syntax::Diagnostics unmatched(const Derivation& derivation);
 
 /// All warnings of a derivation, in the order of the text: its remarks, places that never picked anything, `ungrown`,
-/// `unmatched` and `uncut`.
+/// `unmatched`, `uncut` and `unseenLooks`.
 syntax::Diagnostics warnings(const Derivation& derivation);
 
 /// Error::Input where a derivation leaves nothing solid: its first warning as the cause, or else that no solid is

@@ -163,7 +163,7 @@ syntax::Diagnostics warnings(const Derivation& derivation) {
     std::vector<syntax::Diagnostic> list;
     for (const Warning& r : derivation.warnings) list.push_back({syntax::Severity::Warning, r.span, r.message, r.hint});
     for (const syntax::Diagnostics& found : {derivation.selections.warnings(&derivation.tree), ungrown(derivation),
-                                             unmatched(derivation), uncut(derivation)})
+                                             unmatched(derivation), uncut(derivation), unseenLooks(derivation)})
         list.insert(list.end(), found.all().begin(), found.all().end());
     const auto& sources = derivation.grammar->sources;
     const auto rank = [&](const syntax::Diagnostic& d) {

@@ -118,6 +118,28 @@ TEST(Warnings, ASplitThatOverflowsIsTold) {
         << "nothing of it is there";
 }
 
+TEST(Warnings, ALookThatNothingHasIsTold) {
+    const std::string own = "terminal brick color #a04030\nterminal slate color #404850\n";
+    const auto expected = [](const std::string& place, const std::string& names) {
+        return place + " nothing has this look: all in it have looks of their own: " + names + "\n";
+    };
+    EXPECT_EQ(told(own + "start A -> size 4 (brick + slate size 2 at +y) color #ff0000\n"),
+              expected("4:48", "'brick', 'slate'"));
+    EXPECT_EQ(told(own + "start A -> size 4 B rough .3\nrule B -> split y { ~1: brick | ~1: slate }\n"),
+              expected("4:21", "'brick', 'slate'"));
+    EXPECT_EQ(told(own + "start A -> size 4 (brick - cube size 2 move (0, 2m, 0)) color #ff0000\n"),
+              expected("4:57", "'brick'"))
+        << "the cut looks like the brick";
+    EXPECT_EQ(told(own + "start A -> size 4 (brick + cube size 2 at +y) color #ff0000\n"), expected("4:47", "'brick'"))
+        << "the cube looks like the brick that it grows on";
+    EXPECT_EQ(told(own + "start A -> size 4 ((cube + slate size 2 at +y) + brick size 2 at +x) color #ff0000\n"), "");
+    EXPECT_EQ(told(own + "start A -> brick size 4 color #ff0000 rough .3\n"), "") << "its own";
+    EXPECT_EQ(told(own + "start A -> for k in 0..1 { B move (9 * k, 0, 0) with n = k color #ff0000 }\n"
+                         "rule B when n > 0 -> cube\nrule B -> brick\n"),
+              "")
+        << "taken somewhere";
+}
+
 TEST(Warnings, AFailureNamesWhatWasRemarkedInItsText) {
     const auto failed = derive::derive(
         grammarOf("grammar 1\nstart A -> cube with n = 1 : B\nrule B -> + cube size (4m / (1 - n)) at +x\n"), {},
