@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "grammar/rules/arithmetic_warnings.h"
@@ -10,6 +11,7 @@
 #include "grammar/rules/functions.h"
 #include "grammar/rules/lookup.h"
 #include "grammar/rules/make.h"
+#include "modeler/core/conventions.h"
 
 namespace sgm::rules {
 
@@ -68,6 +70,14 @@ static bool followsTwoDots(syntax::SourceSpan span) {
            span.source->text().substr(span.begin - 2, 2) == "..";
 }
 
+/// How to say a number without a unit as an angle; a small fraction is hardly meant in degrees.
+static std::string angleHint(double number, Unit unit) {
+    if (unit != Unit::None || number <= 0 || number >= 2 || number == std::floor(number))
+        return fmt::format("write '{:.12g}deg'", number);
+    return fmt::format("write degrees: {0:.12g} in radians is '{1:.0f}deg', as a slope '{2:.0f}deg'", number,
+                       degrees(number), degrees(std::atan(number)));
+}
+
 bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_view what, const Written* written) {
     if (fits(value.type, want)) return true;
     const bool angle = want == Want::Angle || want == Want::Angles;
@@ -75,7 +85,7 @@ bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_vi
     std::string hint;
     if (written && written->kind == Written::Kind::Number) {
         const std::string digits = fmt::format("{:.12g}", written->number);
-        if (angle) hint = fmt::format("write '{}deg'", digits);
+        if (angle) hint = angleHint(written->number, value.type.like.units[0]);
         if (want == Want::Length && value.type.like.units[0] == Unit::Share)
             hint = what == "what follows '~'"
                        ? fmt::format("write '{}%' for that share, or '~1' for a share of what the others leave", digits)
