@@ -1,6 +1,8 @@
 // Starts and rules: their symbols, conditions and bodies.
 #include <fmt/format.h>
 
+#include <cctype>
+
 #include <utility>
 
 #include "grammar/rules/bodies.h"
@@ -19,7 +21,9 @@ void checkRule(CheckContext& ctx, const syntax::RuleDecl& decl) {
     if (!isNonTerminal(decl.symbol.text)) {
         ctx.diagnostics.error(
             decl.symbol.span,
-            fmt::format("rules rewrite shapes whose names begin with a capital, and '{}' doesn't", decl.symbol.text));
+            fmt::format("rules rewrite shapes whose names begin with a capital, and '{}' doesn't", decl.symbol.text),
+            fmt::format("write '{}{}'", static_cast<char>(std::toupper(decl.symbol.text[0])),
+                        decl.symbol.text.substr(1)));
         return;
     }
     Rule out;

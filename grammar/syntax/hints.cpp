@@ -1,6 +1,9 @@
 #include "grammar/syntax/hints.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <span>
 
 namespace sgm::syntax {
@@ -117,6 +120,22 @@ std::optional<Hint> decimalComma(const Cursor& cursor) {
     return Hint{span, quoted(span.text()) + " is no number", "a decimal point is '.': write " + quoted(written)};
 }
 
+/// A length in feet, inches or yards.
+std::optional<Hint> foreignUnit(const Cursor& cursor) {
+    struct Unit {
+        std::string_view name;
+        double length_m;
+    };
+    constexpr Unit units[] = {{"feet", .3048},   {"foot", .3048}, {"ft", .3048},   {"inch", .0254},
+                              {"inches", .0254}, {"yard", .9144}, {"yards", .9144}};
+    const Token number = cursor.previous(1);
+    const auto unit = std::ranges::find(units, cursor.peekText(), &Unit::name);
+    if (unit == std::end(units)) return {};
+    const double length_m = std::strtod(std::string(cursor.text(number)).c_str(), nullptr) * unit->length_m;
+    return Hint{join(cursor.span(number), cursor.span(cursor.peek())), quoted(cursor.peekText()) + " is no unit",
+                "write " + quoted(fmt::format("{:.4g}m", length_m))};
+}
+
 /// What stands between or behind numbers and doesn't belong there: `2,5`, `10 m`, `(20; 12; 6)`, `1 to 5`.
 std::optional<Hint> besideNumber(const Cursor& cursor, std::string_view message) {
     if (auto comma = decimalComma(cursor)) return comma;
@@ -129,6 +148,8 @@ std::optional<Hint> besideNumber(const Cursor& cursor, std::string_view message)
     if (isPlain && !token.glued && std::ranges::find(units, text) != std::end(units))
         return Hint{join(cursor.span(number), cursor.span(token)), "a unit stands behind its number without a space",
                     "write " + quoted(written + std::string(text))};
+    if (isPlain && token.kind == Token::Kind::Word)
+        if (auto foreign = foreignUnit(cursor)) return foreign;
     if (text == ";" && message.starts_with("expected ')'"))
         return Hint{cursor.span(token), "';' doesn't stand between numbers", "write ','"};
     if (token.kind == Token::Kind::Word && !token.glued && message.starts_with("expected ')'") &&
@@ -152,6 +173,9 @@ std::optional<Hint> withoutWord(const Cursor& cursor, std::string_view message) 
                     found + (cursor.text(cursor.previous(1)) == "," ? " stands behind ','" : " can't follow a shape"),
                     "the parts of a block are set apart by '|': write " +
                         quoted("| " + std::string(cursor.text(token)) + ": …")};
+    if (token.kind == Token::Kind::Word && cursor.text(cursor.previous(2)) == ".." && message.starts_with("unexpected"))
+        return Hint{cursor.span(token), "unexpected " + found,
+                    "a label stands in quotes: write " + quoted("\"" + std::string(cursor.text(token)) + "\"")};
     if (token.kind == Token::Kind::Number && cursor.at("..", 1) && cursor.at(Token::Kind::Number, 2) &&
         message.starts_with("unexpected"))
         return Hint{
@@ -170,6 +194,9 @@ std::optional<Hint> ofOtherGrammars(const Cursor& cursor, std::string_view messa
     if (cursor.text(last) == "case" && message.ends_with("can't follow a shape"))
         return Hint{cursor.span(last), "there is no 'case'",
                     "a rule's condition stands before '->': 'rule B when … -> …'; " + std::string(ifMend)};
+    if (cursor.at("[") && message.starts_with("unexpected"))
+        return Hint{cursor.span(token), "unexpected '['",
+                    "there are no brackets: '(a + b)' groups shapes, and ',' sets those apart that stand side by side"};
     if (cursor.at("is") && message.starts_with("expected '->'"))
         return Hint{cursor.span(token), "there is no 'is'", "write '=='"};
     if (cursor.text(last) == "->" && token.kind == Token::Kind::Number && cursor.at(":", 1))
@@ -192,6 +219,10 @@ Hint unknownCharacter(const Cursor& cursor) {
     Hint hint{cursor.span(cursor.peek()), "unexpected character " + quoted(bytes), {}};
     for (const Lookalike& row : lookalikes)
         if (bytes.substr(0, row.bytes.size()) == row.bytes) hint.hint = std::string(row.hint);
+    if (bytes == "'" && cursor.at(Token::Kind::Number, 1) && cursor.peek(1).glued) {
+        const double share = std::strtod(std::string(cursor.peekText(1)).c_str(), nullptr);
+        hint.hint = "a share is written in percent: write " + quoted(fmt::format("{:.6g}%", share * 100));
+    }
     const bool beyondAscii = static_cast<unsigned char>(bytes.front()) >= 0x80;
     if (hint.hint.empty() && beyondAscii)
         hint.hint = "names are made of a-z, A-Z, 0-9 and _; text in quotes may hold anything";
