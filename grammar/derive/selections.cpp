@@ -26,6 +26,8 @@ Explanation noEdgeCalled(std::string_view word, const plan::Footprint& footprint
     for (const std::string& other : others) add(words, other);
     for (std::string& name : own) add(words, std::move(name));
     std::string hint = rules::nearestHint(word, words);
+    const bool hasTop = std::find(words.begin(), words.end(), "top") != words.end();
+    if (hint.empty() && word == "roof" && hasTop) hint = "did you mean 'top'?";
     if (hint.empty()) hint = fmt::format("the words here are {}", fmt::join(words, ", "));
     return {std::move(message), std::move(hint)};
 }

@@ -11,6 +11,8 @@ std::string told(const std::string& body) { return warningsOf(derived("grammar 2
 TEST(Selections, WordsOfFacesThatNoEdgeHasAreTold) {
     EXPECT_EQ(told("start A -> size (10, 6, 8) faces .5m { sides: cube | top: cube }\n"),
               "2:40 no edge of this plan is called 'sides', so no face gets this part; did you mean 'side'?\n");
+    EXPECT_EQ(told("start A -> size (10, 6, 8) faces .5m { side: cube | roof: cube | rest: nil }\n"),
+              "2:53 no edge of this plan is called 'roof', so no face gets this part; did you mean 'top'?\n");
     EXPECT_EQ(told("lsystem P passes 1 angle 90deg step 3m\n  axiom \"FW+F+F+F\"\n"
                    "start A -> footprint P extrude 3m faces .2m { w: cube | top: cube }\n"),
               "4:47 no edge of this plan is called 'w', so no face gets this part; did you mean 'W'?\n");
