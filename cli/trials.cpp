@@ -149,7 +149,9 @@ private:
         warnOfFloatingBoxes(*derivation, setting);
         Context context{progress_};
         const bool placesObjects = !derivation->objects.empty();
-        if (const Status s = pipeline::tryObjects(*derivation, options.budget, context); !s.ok()) return s;
+        const auto floating = pipeline::tryObjects(*derivation, options.budget, context);
+        if (!floating.ok()) return floating.error();
+        warnOfFloatingObjects(*floating, setting);
         const auto model = makeModel(std::move(*derivation), context, pipeline::Objects::Apart);
         if (!model.ok()) return model.error();
         const bool checksMesh = setting.isMain && options_.otherSeconds > 0;
@@ -173,6 +175,14 @@ private:
             floating.size() > 1 ? fmt::format(" and {} more float", floating.size() - 1) : " floats";
         diagnostics_.warning(span, prefixed(setting.words, derive::madeBy(derivation, floating[0]) + more),
                              "let it touch what stands on the ground");
+    }
+
+    /// Objects of `place` that hang in the air; once a place, and not at the ends of ranges.
+    void warnOfFloatingObjects(const syntax::Diagnostics& floating, const Setting& setting) {
+        if (setting.isEnd) return;
+        for (const syntax::Diagnostic& d : floating.all())
+            if (said_.insert(keyOf(d.span, "floats")).second)
+                diagnostics_.warning(d.span, prefixed(setting.words, d.message), d.hint);
     }
 
     /// What `sgm build` would tell of the mesh at the cells that are asked for: what floats, what is too thin.

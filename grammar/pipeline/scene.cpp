@@ -8,6 +8,7 @@
 
 #include "grammar/pipeline/buried.h"
 #include "grammar/pipeline/floating.h"
+#include "grammar/pipeline/floating_objects.h"
 #include "grammar/pipeline/gaps.h"
 #include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/meshing.h"
@@ -23,12 +24,14 @@ using derive::Derivation;
 class SceneBuilder {
 public:
     SceneBuilder(const Derivation& model, const SceneRequest& request, Context& context)
-        : request_(request), context_(context), objects_(model, request.budget, context) {}
+        : model_(model), request_(request), context_(context), objects_(model, request.budget, context) {}
 
     Status deriveAll() { return objects_.derive(); }
     syntax::Diagnostics warnings() const { return objects_.warnings(); }
     /// To be asked before they are meshed.
     PlacedFigures figures() const { return objects_.figures(); }
+    /// The same.
+    syntax::Diagnostics floating() const { return floatingObjects(model_, objects_); }
 
     /// Lowers every object.
     Status tryAll() {
@@ -140,6 +143,7 @@ private:
         return Done{};
     }
 
+    const Derivation& model_;
     const SceneRequest& request_;
     Context& context_;
     PlacedModels objects_;
@@ -187,9 +191,11 @@ Result<MadeScene> makeScene(const Model& model, const SceneRequest& request, Con
         SceneBuilder builder(model.derivation, request, context);
         if (const Status s = builder.deriveAll(); !s.ok()) return s;
         made.reports = builder.figures().reports;
+        const syntax::Diagnostics floating = builder.floating();
         if (const Status s = builder.makeAll(made); !s.ok()) return s;
         if (const Status s = builder.placeAll(made.scene); !s.ok()) return s;
         made.warnings = builder.warnings();
+        for (const syntax::Diagnostic& d : floating.all()) made.warnings.warning(d.span, d.message, d.hint);
         mesh::shareMaterials(made.scene);
         return Done{};
     });
@@ -197,19 +203,26 @@ Result<MadeScene> makeScene(const Model& model, const SceneRequest& request, Con
     return made;
 }
 
-Status tryObjects(const derive::Derivation& derivation, const derive::Budget& budget, Context& context) {
-    if (derivation.objects.empty()) return Done{};
+Result<syntax::Diagnostics> tryObjects(const derive::Derivation& derivation, const derive::Budget& budget,
+                                       Context& context) {
+    if (derivation.objects.empty()) return syntax::Diagnostics();
     SceneRequest request;
     request.budget = budget;
     SceneBuilder builder(derivation, request, context);
-    if (const Status s = builder.deriveAll(); !s.ok()) return s;
-    return builder.tryAll();
+    if (const Status s = builder.deriveAll(); !s.ok()) return s.error();
+    syntax::Diagnostics floating = builder.floating();
+    if (const Status s = builder.tryAll(); !s.ok()) return s.error();
+    return floating;
 }
 
 Result<std::vector<MeshWarning>> objectWarnings(const Model& model, const SceneRequest& request, Context& context) {
     SceneBuilder builder(model.derivation, request, context);
     if (const Status s = builder.deriveAll(); !s.ok()) return s.error();
-    return builder.lookAtFirst();
+    const syntax::Diagnostics floating = builder.floating();
+    auto warnings = builder.lookAtFirst();
+    if (!warnings.ok()) return warnings;
+    for (const syntax::Diagnostic& d : floating.all()) warnings->push_back({d.span, {}, d.message});
+    return warnings;
 }
 
 }  // namespace sgm::pipeline

@@ -25,7 +25,7 @@ struct SceneRequest {
 /// A scene, and what is to be said of its objects.
 struct MadeScene {
     mesh::Scene scene;
-    syntax::Diagnostics warnings;  ///< those of derive::warnings, each once
+    syntax::Diagnostics warnings;  ///< those of derive::warnings, each once, then floatingObjects
     std::vector<derive::Reported>
         reports;  ///< of objects at all places, by index in Grammar::reports; empty: no object
     std::vector<MeshWarning> meshWarnings;  ///< what the cells of objects lack, where that is sought
@@ -47,8 +47,8 @@ Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest&
 /// located, for an object that can't be built or holds itself; Error::Budget for too many places.
 Result<MadeScene> makeScene(const Model& model, const SceneRequest& request, Context& context);
 
-/// What makeScene would say of parts that the cells of objects lack, for pictures of the field: meshes the first object
-/// of each start. Errors as of makeScene.
+/// What makeScene would say of parts that the cells of objects lack and of objects that float, for pictures of the
+/// field: meshes the first object of each start. Errors as of makeScene.
 Result<std::vector<MeshWarning>> objectWarnings(const Model& model, const SceneRequest& request, Context& context);
 
 /// Derives the objects of `derivation` and puts a copy of their shapes at every place, so that they are part of its
@@ -57,7 +57,9 @@ Result<std::vector<MeshWarning>> objectWarnings(const Model& model, const SceneR
 /// Objects::Sketched puts a box in the stead of each object.
 Status graftObjects(derive::Derivation& derivation, Objects objects, const derive::Budget& budget, Context& context);
 
-/// Derives and lowers the objects alone: the errors that `makeScene` would have before it meshes.
-Status tryObjects(const derive::Derivation& derivation, const derive::Budget& budget, Context& context);
+/// Derives and lowers the objects alone: the errors that `makeScene` would have before it meshes, or which objects
+/// float.
+Result<syntax::Diagnostics> tryObjects(const derive::Derivation& derivation, const derive::Budget& budget,
+                                       Context& context);
 
 }  // namespace sgm::pipeline

@@ -151,6 +151,17 @@ TEST_F(Check, ANameOfTheLibraryNamesItsFile) {
     EXPECT_EQ(checked("start A -> spere\n").out.find("use"), std::string::npos);
 }
 
+TEST_F(Check, AnObjectThatHangsInTheAirIsAWarning) {
+    const Outcome run = checked(
+        "start Town -> cube size (20, 1, 20) + Lot size 8 at +y move (0, 6, 0)\n"
+        "rule Lot -> place House\n"
+        "start House -> cube size 4\n");
+    EXPECT_EQ(run.code, 0);
+    EXPECT_NE(run.out.find("floats: the object 'House' touches nothing that stands; 6 m below is 'Town/cube'"),
+              std::string::npos)
+        << run.out;
+}
+
 TEST(Usage, NamesTheCommandThatWasMeant) {
     const Outcome run = sgm("biuld x.sgm");
     EXPECT_EQ(run.code, 2);

@@ -193,6 +193,44 @@ TEST(Scene, WordsThatNoObjectHasAreToldApartAndGrafted) {
     EXPECT_EQ(told(derive::warnings(grafted->derivation)), 1u);
 }
 
+std::vector<std::string> floatsIn(const std::string& text) {
+    const auto made = sceneOf("grammar 2\nterminal lawn color #7f9c58\nterminal wall color #e2d6bd\n" + text +
+                              "start House -> wall size (8m, 6m, 8m)\n");
+    EXPECT_TRUE(made.ok()) << made.error().message;
+    std::vector<std::string> told;
+    if (made.ok())
+        for (const auto& d : made->warnings.all())
+            if (d.message.find("float") != std::string::npos) told.push_back(d.message);
+    return told;
+}
+
+const std::string lawn = "start Town -> lawn size (60m, 1m, 60m) + Lots size (40m, 1m, 10m) at +y";
+const std::string lowAndHigh = "rule Low -> place House\nrule High -> place House\n";
+
+TEST(Scene, ObjectsThatHangInTheAirAreToldOnceALine) {
+    const auto told = floatsIn(lawn + " move (0, 6m, 0)\nrule Lots -> row 3 along x gap 4m { place House }\n");
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0],
+              "'Town/lawn/Lots/row/place', made by rule 'Lots#1' (street.sgm:5) and 2 more like it float: the object "
+              "'House' touches nothing that stands; 6 m below is 'Town/lawn'");
+    const auto one = floatsIn(lawn + "\nrule Lots -> Low + High move (0, 9m, 0)\n" + lowAndHigh);
+    ASSERT_EQ(one.size(), 1u);
+    EXPECT_NE(one[0].find("(street.sgm:7) floats: the object 'House'"), std::string::npos) << one[0];
+    const auto within = floatsIn(lawn + "\nrule Lots -> place Pair\n" + lowAndHigh +
+                                 "start Pair -> lawn size (9m, 1m, 9m) + High move (0, 9m, 0)\n");
+    EXPECT_EQ(within.size(), 1u) << "an object holds it";
+}
+
+TEST(Scene, ObjectsThatStandAreNotTold) {
+    EXPECT_TRUE(floatsIn(lawn + "\nrule Lots -> row 3 along x gap 4m { place House }\n").empty());
+    EXPECT_TRUE(floatsIn(lawn + " move (0, -1m, 0)\nrule Lots -> place House\n").empty()) << "partly sunk";
+    EXPECT_TRUE(floatsIn(lawn + "\nrule Lots -> Low + High move (0, 6m, 0)\n" + lowAndHigh).empty())
+        << "on another object";
+    EXPECT_TRUE(
+        floatsIn("start Town -> Lots size (60m, 1m, 10m)\nrule Lots -> row 3 along x gap 4m { place House }\n").empty())
+        << "nothing else is solid";
+}
+
 TEST(Scene, FilesHoldEachObjectOnce) {
     const std::string text = street +
                              "terminal stone color #c8b090\n"
