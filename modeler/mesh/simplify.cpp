@@ -24,6 +24,8 @@ constexpr double roundingShare = 0x1p-20;
 constexpr int mostRounds = 24;
 constexpr int mostRetries = 2;       ///< of planar regions that couldn't be merged
 constexpr size_t leastRetried = 64;  ///< triangles of such a region that is worth it
+/// Of the result's triangles: what another try takes away at most has to be more, for it takes as long as the first.
+constexpr double leastGain = 0.125;
 
 /// Which solids and cavities a surface has, to see whether simplification turns one inside out: those about as small as
 /// the tolerance may be turned.
@@ -83,7 +85,7 @@ public:
         if (cancelled(progress_)) return cancelledError();
         const Insides insides(flat_);
         auto best = simplifyOnce(insides);
-        for (int attempt = 0; attempt < mostRetries && best.ok() && *best && treatLeftAsCurved(); ++attempt) {
+        for (int attempt = 0; attempt < mostRetries && best.ok() && *best && treatLeftAsCurved(**best); ++attempt) {
             auto made = simplifyOnce(insides);
             if (!made.ok()) return made;
             if (!*made || (*made)->triangleCount() >= (*best)->triangleCount()) break;
@@ -92,8 +94,12 @@ public:
         return best;
     }
 
-    /// Whether faults made run() give vertices back.
-    bool isRefined() const { return isRefined_; }
+    /// Whether faults made run() give so much back that a smaller tolerance, with fewer faults, may leave fewer
+    /// triangles than this result: without any it would leave about as many as there were before the first fault.
+    bool gaveMuchBack(const Mesh& result) const {
+        const auto count = static_cast<double>(result.triangleCount());
+        return isRefined_ && count - static_cast<double>(fewest_) > leastGain * count;
+    }
 
     /// The mean length of the mesh's edges, were its triangles equilateral, after run(); metres.
     double meanEdge() const {
@@ -138,18 +144,21 @@ private:
     }
 
     /// Takes the planes from large planar regions that have kept all their triangles, since some place of them crosses
-    /// others: as curved ones they keep those near there. Whether there were any.
-    bool treatLeftAsCurved() {
+    /// others: as curved ones they keep those near there. Whether they are much of the result.
+    bool treatLeftAsCurved(const Mesh& result) {
+        if (!(tolerance_m_ > rounding_m_)) return false;
         std::vector<size_t> triangles(regions_.count());
         for (const uint32_t r : regions_.ofTriangle) ++triangles[r];
-        bool some = false;
-        if (!(tolerance_m_ > rounding_m_)) return some;
-        for (uint32_t r = 0; r < regions_.count(); ++r) {
-            if (!planes_[r].planar() || !planar_->isLeft(r) || triangles[r] < leastRetried) continue;
-            planes_[r] = {};
-            some = true;
-        }
-        return some;
+        size_t left = 0;
+        for (uint32_t r = 0; r < regions_.count(); ++r)
+            if (isLeftWhole(r, triangles[r])) left += triangles[r];
+        if (!(static_cast<double>(left) > leastGain * static_cast<double>(result.triangleCount()))) return false;
+        for (uint32_t r = 0; r < regions_.count(); ++r)
+            if (isLeftWhole(r, triangles[r])) planes_[r] = {};
+        return true;
+    }
+    bool isLeftWhole(uint32_t region, size_t triangles) const {
+        return planes_[region].planar() && planar_->isLeft(region) && triangles >= leastRetried;
     }
 
     /// The result so far: curved regions, planar ones, and those that stay as they are.
@@ -163,7 +172,10 @@ private:
             else
                 for (const Triangle& t : planar_->triangles(r)) triangles_.push_back({t, r});
         }
-        if (!some) return;
+        if (some) collectLeft();
+        fewest_ = std::min(fewest_, triangles_.size());
+    }
+    void collectLeft() {
         for (uint32_t t = 0; t < flat_.triangles.size(); ++t) {
             const uint32_t r = regions_.ofTriangle[t];
             if (planes_[r].planar() && planar_->isLeft(r)) triangles_.push_back({flat_.triangles[t], r});
@@ -197,11 +209,12 @@ private:
     std::optional<PlanarMerge> planar_;
     std::vector<SimpleTriangle> triangles_;  ///< of the result; those of `curved_` first, in its order
     bool isRefined_ = false;
+    size_t fewest_ = SIZE_MAX;  ///< triangles of a result, with faults or without
 };
 
 /// A mesh simplified within the tolerance. Within one as large as the triangles, parts cross one another in many
 /// places, which keep their vertices then: quarters of it, `mostQuarters` at most, may leave fewer, or no faults at
-/// all. The fewest triangles count.
+/// all. The fewest triangles count. Where little was given back there is little to gain.
 Result<Mesh> simplifyWithin(const Mesh& mesh, double tolerance_m, double rounding_m, int threads, Progress* progress) {
     constexpr int mostQuarters = 8;
     const auto extent_m = static_cast<double>(maxComponent(mesh.bounds().size()));
@@ -212,8 +225,9 @@ Result<Mesh> simplifyWithin(const Mesh& mesh, double tolerance_m, double roundin
         auto made = simplifier.run();
         if (!made.ok()) return made.error();
         if (*made) {
+            const bool gaveMuchBack = simplifier.gaveMuchBack(**made);
             if (!best || (*made)->triangleCount() < best->triangleCount()) best = std::move(*made);
-            if (!simplifier.isRefined()) return std::move(*best);
+            if (!gaveMuchBack) return std::move(*best);
         }
         const bool isLast = quarter == mostQuarters || within_m <= rounding_m;
         if (best && (isLast || within_m < 0.25 * simplifier.meanEdge())) return std::move(*best);

@@ -47,8 +47,8 @@ inline double usualTolerance(float cell_m) { return 0.01 * static_cast<double>(c
 /// a connected set of triangles of one origin and label; one that is planar but for a few bumps is divided. Points on a
 /// border of regions that aren't needed within the tolerance go, once for both sides; planar regions are triangulated
 /// anew from their borders. Components that are apart from one another (apart.h) are simplified each by itself. The
-/// result is closed, oriented, a 2-manifold and crosses itself nowhere. Where that takes many vertices within a
-/// tolerance as large as the triangles, quarters of it are tried for the fewest triangles.
+/// result is closed, oriented, a 2-manifold and crosses itself nowhere. Where that takes vertices of more than an
+/// eighth of the triangles within a tolerance as large as they are, quarters of it are tried for the fewest triangles.
 /// O(n) in the triangles of planar regions.
 /// Error::Usage for a negative tolerance, Error::Input for a mesh that isn't closed, Error::Budget for 2³¹ triangles,
 /// Error::Cancelled.
