@@ -235,9 +235,9 @@ private:
     std::vector<Vec3f> inside_, outside_;
 };
 
-/// The parts that cells as large as `thickness_m` may not hold, where they stand on hills.
-std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Model& model, double thickness_m,
-                                 double cell, const std::vector<ThinPart>* among) {
+/// The parts that cells of `held_m` don't hold, where they stand on hills; `cell` is the mesh's.
+std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Model& model, double held_m, double cell,
+                                 const std::vector<ThinPart>* among) {
     std::vector<bool> isWanted(model.shapeOf.size(), !among);
     if (among)
         for (const ThinPart& part : *among)
@@ -247,7 +247,7 @@ std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Mod
         if (model.shapeOf[part] == derive::none || !isWanted[part]) continue;
         const derive::Shape& shape = derivation.tree.shapes[model.shapeOf[part]];
         if (shape.solid == derive::none) continue;
-        if (!(cellThatHolds(shape.scope) < thickness_m)) continue;
+        if (!(cellThatHolds(shape.scope) < held_m)) continue;
         thin.push_back({.part = part, .scope = derive::liftedScope(derivation, model.shapeOf[part])});
         thin.back().plateAxis = plateAxis(thin.back().scope, cell);
         thin.back().isBox = isBox(derivation.tree.solids[shape.solid], shape.scope);

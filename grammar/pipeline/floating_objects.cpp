@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
+#include <map>
+#include <set>
+#include <tuple>
+#include <unordered_map>
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/support.h"
+#include "modeler/mesh/components.h"
 
 namespace sgm::pipeline {
 namespace {
@@ -96,8 +100,7 @@ public:
             const Scope scope = boxes.placed(holder, holds, p);
             bodies_.push_back({scope, derive::boxOf(scope), p.shape, groups++, p.object, lifted[p.shape]});
         }
-        parent_.resize(groups);
-        std::iota(parent_.begin(), parent_.end(), 0u);
+        joined_ = mesh::Components(groups);
         join();
         findStanding();
     }
@@ -106,7 +109,7 @@ public:
     std::vector<const Body*> hanging() {
         std::vector<const Body*> found;
         for (const Body& body : bodies_)
-            if (body.object != none && !stands_[rootOf(body.group)]) found.push_back(&body);
+            if (body.object != none && !stands_[joined_.find(body.group)]) found.push_back(&body);
         std::sort(found.begin(), found.end(), [](const Body* a, const Body* b) { return a->group < b->group; });
         return found;
     }
@@ -118,7 +121,7 @@ public:
             const bool isUnder = other.box.lo.x < body.box.hi.x && other.box.hi.x > body.box.lo.x &&
                                  other.box.lo.z < body.box.hi.z && other.box.hi.z > body.box.lo.z &&
                                  other.box.hi.y <= body.box.lo.y;
-            if (isUnder && stands_[rootOf(other.group)] && (!nearest || other.box.hi.y > nearest->box.hi.y))
+            if (isUnder && stands_[joined_.find(other.group)] && (!nearest || other.box.hi.y > nearest->box.hi.y))
                 nearest = &other;
         }
         if (!nearest) return {};
@@ -144,29 +147,24 @@ private:
     void joinPair(const Body& a, const Body& b) {
         for (int i = 0; i < 3; ++i)
             if (a.box.hi[i] + slack_m < b.box.lo[i] || b.box.hi[i] + slack_m < a.box.lo[i]) return;
-        const uint32_t one = rootOf(a.group), other = rootOf(b.group);
-        if (one == other) return;
-        if (a.isLifted || b.isLifted || derive::penetration(a.scope, b.scope) >= -slack_m) parent_[one] = other;
+        if (joined_.find(a.group) == joined_.find(b.group)) return;
+        if (a.isLifted || b.isLifted || derive::penetration(a.scope, b.scope) >= -slack_m)
+            joined_.join(a.group, b.group);
     }
 
     void findStanding() {
         double ground_m = 1e300;
         for (const Body& body : bodies_)
             if (!body.isLifted) ground_m = std::min(ground_m, body.box.lo.y);
-        stands_.resize(parent_.size());
-        if (startsWithSolid_) stands_[rootOf(0)] = true;
+        stands_.resize(joined_.size());
+        if (startsWithSolid_) stands_[joined_.find(0)] = true;
         for (const Body& body : bodies_)
-            if (body.isLifted || body.box.lo.y <= ground_m + slack_m) stands_[rootOf(body.group)] = true;
-    }
-
-    uint32_t rootOf(uint32_t group) {
-        while (parent_[group] != group) group = parent_[group] = parent_[parent_[group]];
-        return group;
+            if (body.isLifted || body.box.lo.y <= ground_m + slack_m) stands_[joined_.find(body.group)] = true;
     }
 
     const Derivation& holder_;
     std::vector<Body> bodies_;
-    std::vector<uint32_t> parent_;
+    mesh::Components joined_{0};  ///< groups that touch
     std::vector<bool> stands_;
     bool startsWithSolid_ = false;
 };

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "grammar/syntax/foreign_lengths.h"
+
 namespace sgm::rules {
 namespace {
 
@@ -12,7 +14,7 @@ struct Measure {
     std::string_view text;
     double factor;
 };
-constexpr double foot_m = .3048, inch_m = .0254;
+using syntax::foot_m, syntax::inch_m;
 constexpr Measure measures[] = {
     {Unit::Metre, "m", 1},        {Unit::Metre, "km", 1000},   {Unit::Metre, "cm", .01},
     {Unit::Metre, "mm", .001},    {Unit::Metre, "ft", foot_m}, {Unit::Metre, "'", foot_m},

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cctype>
-
 #include <utility>
 
 #include "grammar/rules/bodies.h"

@@ -4,10 +4,10 @@
 #include <charconv>
 #include <numbers>
 
+#include "grammar/syntax/foreign_lengths.h"
 #include "modeler/core/printable.h"
 
 namespace sgm::syntax {
-
 namespace {
 
 using Kind = Expr::Kind;
@@ -260,8 +260,8 @@ private:
         constexpr std::string_view units[] = {"", "m", "km", "cm", "mm", "m2", "m²", "m3", "m³", "deg", "%", "/m"};
         if (std::find(std::begin(units), std::end(units), number.unit) != std::end(units)) return;
         std::string hint = "a number is plain or has m, km, cm, mm, m2, m3, deg, % or /m";
-        if (number.unit == "ft") hint = "write " + quoted(plain(number.number * .3048) + "m");
-        if (number.unit == "in") hint = "write " + quoted(plain(number.number * .0254) + "m");
+        if (const bool feet = number.unit == "ft"; feet || number.unit == "in")
+            hint = "write " + quoted(plain(number.number * (feet ? foot_m : inch_m)) + "m");
         if (number.unit == "rad")
             hint = "angles are in degrees: write " + quoted(plain(number.number * 180 / std::numbers::pi) + "deg");
         cursor_.complain(number.span, "there is no unit " + quoted(number.unit), hint);

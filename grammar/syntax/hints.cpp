@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <span>
 
+#include "grammar/syntax/foreign_lengths.h"
+
 namespace sgm::syntax {
 
 namespace {
@@ -126,8 +128,8 @@ std::optional<Hint> foreignUnit(const Cursor& cursor) {
         std::string_view name;
         double length_m;
     };
-    constexpr Unit units[] = {{"feet", .3048},   {"foot", .3048}, {"ft", .3048},   {"inch", .0254},
-                              {"inches", .0254}, {"yard", .9144}, {"yards", .9144}};
+    constexpr Unit units[] = {{"feet", foot_m},   {"foot", foot_m}, {"ft", foot_m},   {"inch", inch_m},
+                              {"inches", inch_m}, {"yard", yard_m}, {"yards", yard_m}};
     const Token number = cursor.previous(1);
     const auto unit = std::ranges::find(units, cursor.peekText(), &Unit::name);
     if (unit == std::end(units)) return {};

@@ -11,9 +11,9 @@ namespace sgm::mesh {
 namespace {
 
 constexpr int probeRounds = 8;  ///< times that both sides of a crease are looked at
-/// Of the way from a crossing to either end: where its piece is looked at, and farther where the other one is found,
-/// for the tangents of round pieces cross beyond their crease.
-constexpr float probeShare = 0.0625f, farthestProbe = 0.8f;
+/// Of the way from a crossing to either end: farther than `probeShare` a piece is looked at where the other one is
+/// found nearer, for the tangents of round pieces cross beyond their crease.
+constexpr float farthestProbe = 0.8f;
 constexpr float bulgeShare = 0.25f;  ///< of the way to an end: how far its piece may be from it
 float fartherThan(float share) { return std::min(4 * share, 0.5f + 0.5f * share); }
 constexpr float settledShare = 1e-4f;       ///< of a cell, within which a crease point may still move
@@ -71,7 +71,6 @@ uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Wor
         Gap gap;
         gap.segment = s;
         gap.a = segments[s].ends[0], gap.b = segments[s].ends[1];
-        gap.shares = {probeShare, probeShare};
         gap.nearA.value = segments[s].values[0], gap.nearB.value = segments[s].values[1];
         takeEnds(segments[s], gap, gap.a, gap.b);
         gaps_.push_back(gap);
@@ -334,7 +333,7 @@ void FaceCreases::split(uint32_t g, const PiecePoint& third) {
     gap.state = State::Ends;
     gap.leaves = false;
     gap.rounds = 0;
-    gap.shares = after.shares = {probeShare, probeShare};
+    gap.shares = after.shares;
     gaps_.push_back(after);
     next_.push_back(added);
 }

@@ -40,6 +40,7 @@ public:
 
 private:
     static constexpr int mostSplits = 3;             ///< pieces found between the ends of a segment
+    static constexpr float probeShare = 0.0625f;     ///< of the way to an end, where its piece is looked at
     static constexpr float mergedShare = 0x1.0p-8f;  ///< of a cell, within which two breaks are one
     enum class State : uint8_t { Ends, Middle, Third, Crease, Below, Beside, Border, Done };
     /// Two neighbouring pieces of a segment, and the search for the point between them.
@@ -49,11 +50,11 @@ private:
         State state = State::Ends;
         uint8_t rounds = 0, splits = 0;
         struct {
-            uint8_t below = 0, beside = 0;  ///< left, and taken
-        } looks;                            ///< at a border's wall
-        std::array<float, 2> shares{};      ///< of the way to a and to b, where these are looked for
-        PiecePoint a, b;                    ///< where the pieces are known
-        LinearField nearA, nearB;           ///< their fields where they were looked at last, nearer to the crease
+            uint8_t below = 0, beside = 0;                    ///< left, and taken
+        } looks;                                              ///< at a border's wall
+        std::array<float, 2> shares{probeShare, probeShare};  ///< of the way to a and b, where these are looked for
+        PiecePoint a, b;                                      ///< where the pieces are known
+        LinearField nearA, nearB;  ///< their fields where they were looked at last, nearer to the crease
         LinearField wall;  ///< between two parts, looked at below the surface; a third piece, looked at amid the gap
         Vec3f at;
         Vec3f crossing;       ///< of the two lines, before it was moved into the face

@@ -98,7 +98,7 @@ public:
     /// triangles than this result: without any it would leave about as many as there were before the first fault.
     bool gaveMuchBack(const Mesh& result) const {
         const auto count = static_cast<double>(result.triangleCount());
-        return isRefined_ && count - static_cast<double>(fewest_) > leastGain * count;
+        return count - static_cast<double>(fewest_) > leastGain * count;
     }
 
     /// The mean length of the mesh's edges, were its triangles equilateral, after run(); metres.
@@ -137,7 +137,6 @@ private:
             if (cancelled(progress_)) return cancelledError();
             if (faults.empty()) faults = insides.turned(triangles_);
             if (faults.empty()) return std::optional(composeMesh(mesh_, flat_, regions_, planes_, triangles_));
-            isRefined_ = true;
             if (!refine(faults)) break;
         }
         return std::optional<Mesh>();
@@ -208,8 +207,7 @@ private:
     std::optional<Decimation> curved_;
     std::optional<PlanarMerge> planar_;
     std::vector<SimpleTriangle> triangles_;  ///< of the result; those of `curved_` first, in its order
-    bool isRefined_ = false;
-    size_t fewest_ = SIZE_MAX;  ///< triangles of a result, with faults or without
+    size_t fewest_ = SIZE_MAX;               ///< triangles of a result, with faults or without
 };
 
 /// A mesh simplified within the tolerance. Within one as large as the triangles, parts cross one another in many

@@ -7,8 +7,8 @@
 
 namespace sgm::document {
 
-/// `text` without blanks around it, where "~" and "~/…" stand for the home folder (`HOME`) as in a shell. Other users'
-/// homes ("~name") stay as they are written.
+/// `text` without blanks around it, where "~" and "~/…" stand for the home folder (`HOME`) as in a shell. Homes of
+/// other users ("~name") stay as they are written.
 std::filesystem::path typedPath(std::string_view text);
 
 }  // namespace sgm::document

@@ -20,8 +20,7 @@ using namespace widgets;
 
 constexpr float widthForAll = 62;  // of the bar, in font sizes: a narrower one leaves out what a key does as well
 
-float widthOf(const char* label) { return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x; }
-float widthOfToggle(const char* label) { return widthOf(label) + ImGui::GetFrameHeight(); }
+float widthOfToggle(const char* label) { return buttonWidth(label) + ImGui::GetFrameHeight(); }
 
 /// What the shown model is, and the times of its stages, a line each; both empty where there is none.
 std::pair<std::string, std::string> factsOf(const Workbench& bench) {
@@ -87,7 +86,7 @@ void Bars::top(Workbench& bench) {
     if (quietButton(report, "bar.redo", "Redo", document.history().canRedo() ? redo.c_str() : nullptr,
                     document.history().canRedo()))
         bench.redo();
-    flowApart(widthOf("Field") + widthOf("Fog") + widthOf("Mesh") + widthOf("Split") + 3);
+    flowApart(buttonWidth("Field") + buttonWidth("Fog") + buttonWidth("Mesh") + buttonWidth("Split") + 3);
     int pane = static_cast<int>(bench.view.look.pane);
     constexpr std::array panes{"Field", "Fog", "Mesh", "Split"};
     constexpr std::array meanings{"The field itself, by rays: exact, and there at once",
@@ -113,7 +112,7 @@ void Bars::lookControls(Workbench& bench) {
     flow(widthOfToggle("Ground"));
     toggle(report, "look.ground", "Ground", bench.view.look.ground, "Stand the model on a plane that takes its shadow");
     const bool within = bench.view.orbit.lamp_m > 0;
-    flow(widthOf("Outside"));
+    flow(buttonWidth("Outside"));
     if (button(report, "look.inside", within ? "Outside" : "Inside",
                "Stand in the largest hollow with a lamp, or leave it", bench.view.field.hasField()))
         within ? frameAll(bench) : bench.stepInside();
@@ -133,7 +132,7 @@ void Bars::lookControls(Workbench& bench) {
         bench.view.orbit.stands = bench.view.look.motion != Motion::Orbit;
     }
     hint("W A S D Q E turn about the model, fly through it, or walk on its ground");
-    flow(widthOf("?"));
+    flow(buttonWidth("?"));
     if (quietButton(report, "bar.help", "?", "Keys and buttons (F1)")) help_ = !help_;
 }
 
@@ -160,7 +159,7 @@ void Bars::meshControls(Workbench& bench) {
     flow(widthOfToggle("Section"));
     toggle(report, "mesh.section", "Section", bench.view.look.section, "Cut the mesh open along an axis");
     if (!bench.view.look.section) return;
-    flow(3 * widthOf("x") + 2);
+    flow(3 * buttonWidth("x") + 2);
     constexpr std::array axes{"x", "y", "z"};
     oneOf(report, "section.axis", axes, bench.view.look.sectionAxis);
     flow(em * 6);

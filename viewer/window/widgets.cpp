@@ -119,6 +119,8 @@ bool pick(Report& report, const std::string& name, const char* label,
     return chosen;
 }
 
+float buttonWidth(const char* label) { return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x; }
+
 bool field(Report& report, const std::string& name, std::string& text, const char* empty, float width) {
     ImGui::SetNextItemWidth(width > 0 ? width : -FLT_MIN);
     ImGui::PushID(name.c_str());

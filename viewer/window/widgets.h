@@ -28,6 +28,8 @@ bool choice(Report& report, const std::string& name, std::span<const std::string
 /// on it; they are reported as NAME.WORD while it is open. True when one was picked.
 bool pick(Report& report, const std::string& name, const char* label,
           const std::function<std::vector<document::ListedWord>()>& words, std::string& picked);
+/// How wide a button with this label is, pixels.
+float buttonWidth(const char* label);
 /// A line of text; true when it was ended with Enter or left, changed.
 bool field(Report& report, const std::string& name, std::string& text, const char* hint = nullptr, float width = 0);
 /// Enter was pressed in the field just made: it presses the button that belongs to the field.

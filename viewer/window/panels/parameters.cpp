@@ -68,7 +68,7 @@ void ParametersPanel::show(Workbench& bench) {
 }
 
 void ParametersPanel::newParameter(Workbench& bench) {
-    const float width = ImGui::CalcTextSize("Add").x + 2 * ImGui::GetStyle().FramePadding.x;
+    const float width = buttonWidth("Add");
     ImGui::PushFont(codeFont());
     field(bench.report, "param.new", newParameter_, "name = value in least..most",
           ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
@@ -150,7 +150,7 @@ void ParametersPanel::choices(Workbench& bench) {
     if (!ways.empty() &&
         oneOfNames("choice.way", ways, "Automatic", choice.way, "A `derive` line, or the automatic derivation", 0))
         bench.document.choose(choice, "Way");
-    const float button = ImGui::CalcTextSize("Re-roll").x + 2 * ImGui::GetStyle().FramePadding.x;
+    const float button = buttonWidth("Re-roll");
     ImGui::AlignTextToFramePadding();
     faint("Seed");
     ImGui::SameLine();
@@ -275,7 +275,7 @@ void ParametersPanel::row(Workbench& bench, document::ParamRow row) {
 void ParametersPanel::styles(Workbench& bench) {
     if (rows_.empty()) return faint("The grammar has no parameters.");
     heading("Keep these values");
-    const float button = ImGui::CalcTextSize("Save style").x + 2 * ImGui::GetStyle().FramePadding.x;
+    const float button = buttonWidth("Save style");
     field(bench.report, "style.name", styleName_, "Name of a style",
           ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x);
     const bool done = entered() && !styleName_.empty();

@@ -264,7 +264,7 @@ void RulesPanel::blockInspector(Workbench& bench, const std::vector<Case>& parts
 void RulesPanel::addPart(Workbench& bench, const Case& after, const syntax::Attribute* attribute) {
     const std::string sample = document::edits::samplePart(attribute);
     if (samplePart_ != sample) newPart_ = samplePart_ = sample;
-    const float width = ImGui::CalcTextSize("Add part").x + 2 * ImGui::GetStyle().FramePadding.x;
+    const float width = buttonWidth("Add part");
     ImGui::PushFont(codeFont());
     field(bench.report, "part.new", newPart_, "size: body",
           ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);

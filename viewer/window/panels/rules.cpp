@@ -139,7 +139,7 @@ size_t RulesPanel::selectedRow(Workbench& bench) {
 }
 
 void RulesPanel::newRule(Workbench& bench, size_t selected) {
-    const float width = ImGui::CalcTextSize("Add rule").x + 2 * ImGui::GetStyle().FramePadding.x;
+    const float width = buttonWidth("Add rule");
     field(bench.report, "rule.new", newRule_, "Name -> body, or start Name -> body",
           ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
     const bool hasBody = newRule_.find("->") != std::string::npos, done = entered() && hasBody;

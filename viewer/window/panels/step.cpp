@@ -100,7 +100,7 @@ void StepPanel::save(Workbench& bench, const document::StepView& view) {
     faint(shortened(whole, ImGui::GetContentRegionAvail().x));
     if (way) ImGui::PopFont();
     hint(whole.size() <= longestHint ? whole.c_str() : (whole.substr(0, longestHint) + "…").c_str());
-    const float width = ImGui::CalcTextSize("Save way").x + 2 * ImGui::GetStyle().FramePadding.x;
+    const float width = buttonWidth("Save way");
     field(bench.report, "step.name", way_, "Name of the way",
           ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
     const bool possible = way.ok() && !bench.steps.running(), done = entered() && possible;
