@@ -105,9 +105,12 @@ public:
             if (tied_[i] != owners_[i]) owners_[i] = 0;
         return owners_;
     }
+    /// Of the points that at() was asked for last: the first in the grammar of those that share a surface, which a
+    /// mesh gives it to but for rounding.
+    const std::vector<OriginId>& first() const { return tied_; }
 
 private:
-    std::vector<OriginId> owners_, tied_;  ///< where several tie, the first of them in `tied_`
+    std::vector<OriginId> owners_, tied_;
     std::vector<uint32_t> labels_;
 };
 

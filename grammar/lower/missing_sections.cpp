@@ -35,10 +35,12 @@ std::optional<ThinPart> missingAt(const ThinSection& section, const Presence& pr
     if (section.lines.size() < fewestLinesAcross) return std::nullopt;
     const int axis = section.face / 2;
     const Mat3 local = section.scope.axes.transposed();
+    const Vec3f along = (section.scope.axes * alongAxis(axis)).as<float>();
     std::vector<double> thicknesses_m;
     std::vector<Box3d> boxes, gathered;
     for (const ThinSection::Line& line : section.lines) {
-        const auto isNear = [&](const ThinSection::Crossing& c) { return presence.isNear(c.at, c.owner); };
+        // Of a gap that is filled the rims are still there, beside its lines.
+        const auto isNear = [&](const ThinSection::Crossing& c) { return presence.isNearAlong(c.at, along, c.owner); };
         if (isNear(line.ends[0]) || isNear(line.ends[1])) continue;
         thicknesses_m.push_back(line.thickness_m);
         Box3d box;

@@ -11,6 +11,7 @@
 namespace sgm::lower {
 namespace {
 
+constexpr float besideLine = 5;  ///< times as far counts what lies beside a line
 constexpr uint32_t noEntry = field::HashIndex::none;
 
 Vec3i cellOf(Vec3f p, float perMetre) {
@@ -85,15 +86,29 @@ void Presence::enter(uint64_t key, uint32_t triangle) {
     cells_[cell].newest = static_cast<uint32_t>(entries_.size()) - 1;
 }
 
-bool Presence::isNear(Vec3f p, OriginId part) const {
+template <class IsNear>
+bool Presence::isAny(Vec3f p, OriginId part, IsNear&& isNear) const {
     const uint32_t cell = find(keyOf(cellOf(p, perMetre_), part));
     if (cell == noEntry) return false;
-    const float reach = reach_m_[part];
-    for (uint32_t at = cells_[cell].newest; at != noEntry; at = entries_[at].next) {
-        const Triangle& t = triangles_[entries_[at].triangle];
-        if (mesh::squaredDistance(p, t.a, t.b, t.c) <= reach * reach) return true;
-    }
+    for (uint32_t at = cells_[cell].newest; at != noEntry; at = entries_[at].next)
+        if (isNear(triangles_[entries_[at].triangle])) return true;
     return false;
+}
+
+bool Presence::isNear(Vec3f p, OriginId part) const {
+    const float reach = reach_m_[part];
+    return isAny(p, part, [&](const Triangle& t) { return mesh::squaredDistance(p, t.a, t.b, t.c) <= reach * reach; });
+}
+
+bool Presence::isNearAlong(Vec3f p, Vec3f along, OriginId part) const {
+    const float reach = reach_m_[part];
+    const auto stretched = [&](Vec3f corner) {
+        const Vec3f d = corner - p, on = along * dot(d, along);
+        return on + (d - on) * besideLine;
+    };
+    return isAny(p, part, [&](const Triangle& t) {
+        return mesh::squaredDistance({}, stretched(t.a), stretched(t.b), stretched(t.c)) <= reach * reach;
+    });
 }
 
 bool Presence::isWhole(const derive::Scope& scope, OriginId part, double cell_m) const {

@@ -26,6 +26,8 @@ public:
     Presence(const mesh::Mesh& mesh, std::span<const Query> queries, std::span<const Vec3f> points, float cell_m);
     /// Whether a triangle of the part lies within its reach.
     bool isNear(Vec3f p, OriginId part) const;
+    /// Whether a line through p along `along`, of length 1, passes one within a fifth of that reach.
+    bool isNearAlong(Vec3f p, Vec3f along, OriginId part) const;
     /// Whether triangles of the part lie along every line through its scope, which is thinner than a cell of `cell_m`
     /// there: then nothing of it is missing, whatever the field says.
     bool isWhole(const derive::Scope& scope, OriginId part, double cell_m) const;
@@ -46,6 +48,8 @@ private:
 
     void addTriangle(const Triangle& triangle, OriginId part);
     void enter(uint64_t key, uint32_t triangle);
+    template <class IsNear>
+    bool isAny(Vec3f p, OriginId part, IsNear&& isNear) const;
     uint32_t find(uint64_t key) const {
         return index_.find(key, [&](uint32_t cell) { return cells_[cell].key == key; });
     }

@@ -227,8 +227,9 @@ private:
         for (size_t i = 0; i + 1 < points_.size(); i += 2) {
             const double thickness_m = brackets[i + 1][0] - brackets[i][0];
             if (thickness_m < leastThickness * cell_m_ || thickness_m >= thinnest_m) continue;
-            if (owners[i] != section.part || owners[i + 1] == 0) continue;
-            section.lines.push_back({{{{points_[i], owners[i]}, {points_[i + 1], owners[i + 1]}}}, thickness_m});
+            if (owners[i] != section.part) continue;
+            section.lines.push_back(
+                {{{{points_[i], owners[i]}, {points_[i + 1], owners_.first()[i + 1]}}}, thickness_m});
         }
     }
 

@@ -85,6 +85,23 @@ TEST(ThinSections, AreTheWallsThatCutsLeave) {
     EXPECT_FALSE(lower::findThinSections(model.derivation, *model.model, model.tape(), .2f, 2, &progress).ok());
 }
 
+/// The tops of two slabs below a sill are one plane, so that the gap below it belongs to neither.
+TEST(ThinSections, AreGapsBesidePartsThatShareASurface) {
+    const Lowered model(
+        "grammar 2\nstart A -> cube size (20m, 5m, 20m) + cube size (24m, 1m, 24m) move (0, -3m, 0)\n"
+        "  + cube size (24.4m, .5m, 24.4m) move (0, -2.75m, 0) + cube size (18m, .3m, 20.7m) move (0, -2.179m, 0)\n");
+    const auto found = lower::findThinSections(model.derivation, *model.model, model.tape(), .35f, 2, nullptr);
+    ASSERT_TRUE(found.ok());
+    ASSERT_EQ(found->size(), 2u);
+    const std::array<int, 2> faces{3, 2};  // up from the slabs, down from the sill
+    for (size_t i = 0; i < 2; ++i) {
+        const lower::ThinSection& section = (*found)[i];
+        EXPECT_TRUE(section.isGap);
+        EXPECT_EQ(section.face, faces[i]);
+        for (const auto& line : section.lines) EXPECT_NEAR(line.thickness_m, .171, 1e-3);
+    }
+}
+
 TEST_P(Thin, PartsOfTwoCellsAreAllThere) {
     const auto& [name, thin] = GetParam();
     const Lowered model = scene(name, thin, 2.0 * 40 / 128);

@@ -211,6 +211,21 @@ TEST(Refining, GapsBesideFacesThatShowInStripsAreThere) {
         }
 }
 
+/// Half a cell wide and no deeper, so that the rims are near what is missing: it was filled at 64, 76 and 84.
+TEST(Refining, GroovesAsShallowAsWideAreThere) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\nstart A -> cube size (22m, 5m, 10m) + cube size (22.24m, 2m, 10.24m) move (0, -1.5m, 0)\n"
+        "  + cube size (25m, .25m, 13m) move (0, -.239m, 0)\n",
+        context);
+    const double volume_m3 = 22 * 10 * (5 - 2 - .25) + 22.24 * 10.24 * 2 + 25 * 13 * .25;
+    for (const int resolution : {64, 70, 76, 80, 84, 92, 100}) {
+        const MeshedModel made = meshed(model, resolution, 3);
+        EXPECT_TRUE(made.missing->empty()) << resolution;
+        EXPECT_NEAR(mesh::measure(made.mesh).volume_m3 / volume_m3, 1, 1e-5) << resolution;
+    }
+}
+
 /// A shell over an oblique plan, a tube and a roof that is open below, all of 10 cm, in cells of 13 to 16 cm.
 TEST(Refining, WallsOfAnyPlanAndSlopeAreThere) {
     struct Case {
