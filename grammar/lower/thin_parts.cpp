@@ -7,7 +7,6 @@
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
-#include "grammar/lower/local_tapes.h"
 #include "grammar/lower/mesh_positions.h"
 #include "grammar/lower/missing_sections.h"
 #include "grammar/lower/presence.h"
@@ -16,6 +15,7 @@
 #include "grammar/lower/thin_walls.h"
 #include "modeler/core/parallel.h"
 #include "modeler/eval/evaluate.h"
+#include "modeler/eval/local_tapes.h"
 
 namespace sgm::lower {
 namespace {
@@ -55,6 +55,9 @@ struct Candidate {
     int plateAxis = -1;      ///< across it, where the scope is thin along one axis alone
     /// What its triangles in the mesh cover, seen along axes of the scope.
     std::array<double, 3> facing_m2{};
+
+    Vec3d centre() const { return scope.centre; }
+    OriginId number() const { return part; }
 };
 
 /// The one axis along which a scope is thin; −1 for bars and for what is thin all over.
@@ -99,7 +102,7 @@ public:
     Prober(const eval::Tape& tape, const Presence& presence, float cell_m)
         : tapes_(tape), presence_(presence), cell_m_(static_cast<double>(cell_m)) {}
 
-    /// Looks for at most LocalTapes::mostBoxes parts that lie beside each other.
+    /// Looks for at most eval::LocalTapes::mostBoxes parts that lie beside each other.
     void probe(std::span<Candidate> parts, std::span<const Box3f> boxes) {
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) { parts[i].missing = missing(parts[i], tape); });
     }
@@ -111,7 +114,7 @@ public:
             if (candidate.isBox || isThinAlong(candidate.scope, axis, cell_m_)) scope.size[axis] *= probed;
         return derive::boxOf(scope).as<float>();
     }
-    LocalTapes& tapes() { return tapes_; }
+    eval::LocalTapes& tapes() { return tapes_; }
 
 private:
     double missing(const Candidate& candidate, const eval::Tape& tape) {
@@ -221,17 +224,17 @@ private:
             for (size_t i = 0; i < inside_.size(); ++i) (values_[i] < 0 ? inside_ : outside_)[i] = middles_[i];
         }
     }
-    void evaluate(const PointList& rows, const eval::Tape& tape) {
+    void evaluate(const eval::PointList& rows, const eval::Tape& tape) {
         values_.resize(rows.size());
         eval::evaluate(tape, rows.points(), values_.data(), tapes_.workspace());
     }
 
-    LocalTapes tapes_;
+    eval::LocalTapes tapes_;
     const Presence& presence_;
     double cell_m_;
-    PointList rows_, middles_;
+    eval::PointList rows_, middles_;
     std::vector<float> values_;
-    SurfaceOwners owners_;
+    eval::SurfaceOwners owners_;
     std::vector<Vec3f> inside_, outside_;
 };
 
@@ -269,8 +272,8 @@ void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Pres
         part.isWhole = part.isPresent && covers;
     });
     std::erase_if(thin, [](const Candidate& c) { return c.isWhole; });
-    orderByPlace(std::span(thin));
-    probeInGroups(
+    eval::orderByPlace(std::span(thin));
+    eval::probeInGroups(
         std::span(thin), threads, progress, "thin parts", [&] { return Prober(tape, presence, cell_m); },
         [](Prober& prober, std::span<Candidate> some, std::span<const Box3f> boxes, size_t) {
             prober.probe(some, boxes);

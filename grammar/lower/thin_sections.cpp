@@ -1,4 +1,5 @@
 #include "grammar/lower/thin_sections.h"
+#include "modeler/eval/local_tapes.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +8,6 @@
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
-#include "grammar/lower/local_tapes.h"
 #include "grammar/lower/scope_lines.h"
 
 namespace sgm::lower {
@@ -32,6 +32,9 @@ struct FacedPart {
     derive::Scope scope;
     uint32_t faces = 0;  ///< as a mask
     bool cuts = false;   ///< from what stands, or is in what does
+
+    Vec3d centre() const { return scope.centre; }
+    OriginId number() const { return part; }
 };
 
 /// One worker's.
@@ -44,7 +47,7 @@ public:
     Box3f boxOf(const FacedPart& part) const {
         return derive::boxOf(part.scope).inflated(farthest * cell_m_).as<float>();
     }
-    LocalTapes& tapes() { return tapes_; }
+    eval::LocalTapes& tapes() { return tapes_; }
 
     void probe(std::span<const FacedPart> parts, std::span<const Box3f> boxes, std::vector<ThinSection>& found) {
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) {
@@ -147,7 +150,7 @@ private:
     /// Keeps those lines that go into solid, or out of it, at the face, and adds some in tiles that a line misses but
     /// the surface may come into: a bar that runs through a house shows in an opening alone.
     void keepCrossing(Vec3d out, const eval::Tape& tape, bool intoSolid) {
-        const float slope = believedSlope(tape);
+        const float slope = eval::believedSlope(tape);
         std::vector<Line> crossing, open = lines_;
         for (size_t looked = 0; !open.empty() && looked < mostTiles; looked += open.size()) {
             points_.clear();
@@ -238,15 +241,15 @@ private:
         eval::evaluate(tape, points_.points(), values_.data(), tapes_.workspace());
     }
 
-    LocalTapes tapes_;
+    eval::LocalTapes tapes_;
     Box3f bounds_;
     double cell_m_;
     std::array<Places, 2> places_;
     std::vector<Line> lines_;
     size_t gridLines_ = 0;  ///< of these the first, from the even places and near the ends
-    PointList points_;
+    eval::PointList points_;
     std::vector<float> values_;
-    SurfaceOwners owners_;
+    eval::SurfaceOwners owners_;
 };
 
 /// By shape: whether it, or one that holds it, is cut from what stands.
@@ -274,7 +277,7 @@ std::vector<FacedPart> facedParts(const derive::Derivation& derivation, const Mo
         if (!cuts[shape] && minComponent(derivation.tree.shapes[shape].scope.size) < leastFaced * cell_m) continue;
         all.push_back({part, derive::liftedScope(derivation, shape), faces[part], cuts[shape]});
     }
-    orderByPlace(std::span(all));
+    eval::orderByPlace(std::span(all));
     return all;
 }
 
@@ -284,8 +287,9 @@ Result<std::vector<ThinSection>> findThinSections(const derive::Derivation& deri
                                                   const eval::Tape& tape, float cell_m, int threads, Progress* progress,
                                                   const std::vector<ThinPart>* among) {
     const std::vector<FacedPart> parts = facedParts(derivation, model, static_cast<double>(cell_m), among);
-    std::vector<std::vector<ThinSection>> found((parts.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes);
-    probeInGroups(
+    std::vector<std::vector<ThinSection>> found((parts.size() + eval::LocalTapes::mostBoxes - 1) /
+                                                eval::LocalTapes::mostBoxes);
+    eval::probeInGroups(
         std::span(parts), threads, progress, "thin walls and gaps",
         [&] { return SectionProber(tape, model.field.bounds, cell_m); },
         [&](SectionProber& prober, std::span<const FacedPart> some, std::span<const Box3f> boxes, size_t group) {

@@ -1,4 +1,5 @@
 #include "grammar/lower/thin_walls.h"
+#include "modeler/eval/local_tapes.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +10,6 @@
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
 #include "grammar/lower/cutters.h"
-#include "grammar/lower/local_tapes.h"
 #include "grammar/lower/met_segments.h"
 #include "grammar/lower/scope_lines.h"
 #include "modeler/field/convex.h"
@@ -49,6 +49,9 @@ struct WalledPart {
     OriginId part = 0;
     derive::Scope scope;
     double shell_m = 0;  ///< thickness that its parameters say; 0 for a cut
+
+    Vec3d centre() const { return scope.centre; }
+    OriginId number() const { return part; }
 };
 
 /// Across a wall, from the part's surface to the next one.
@@ -90,7 +93,7 @@ public:
     Box3f boxOf(const WalledPart& part) const {
         return derive::boxOf(part.scope, lineReach).inflated((depths.back() + 1) * cell_m_).as<float>();
     }
-    LocalTapes& tapes() { return tapes_; }
+    eval::LocalTapes& tapes() { return tapes_; }
 
     void probe(std::span<const WalledPart> parts, std::span<const Box3f> boxes, std::vector<ThinWalls>& found) {
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) { probePart(parts[i], tape, found); });
@@ -172,7 +175,7 @@ private:
             for (const Ray& ray : rays_) points_.add(ray.place().as<float>());
             evaluate(tape);
         };
-        const float share = stepShare / believedSlope(tape);
+        const float share = stepShare / eval::believedSlope(tape);
         placeAll();
         for (size_t i = 0; i < rays_.size(); ++i) rays_[i].value = values_[i];
         for (int step = 0; step < mostSteps && !rays_.empty(); ++step) {
@@ -269,14 +272,14 @@ private:
         eval::evaluate(tape, points_.points(), values_.data(), tapes_.workspace());
     }
 
-    LocalTapes tapes_;
+    eval::LocalTapes tapes_;
     Box3f bounds_;
     double cell_m_;
     std::vector<Ray> rays_;
     std::vector<Bracket> surface_;
-    PointList points_;
+    eval::PointList points_;
     std::vector<float> values_;
-    SurfaceOwners owners_;
+    eval::SurfaceOwners owners_;
 };
 
 /// The least thickness of walls and shells that a solid's parameters say, metres; infinite where they say none.
@@ -360,9 +363,10 @@ Result<std::vector<ThinPart>> findMissingWalls(const derive::Derivation& derivat
                                                int threads, Progress* progress, const std::vector<ThinPart>* among) {
     const auto cell = static_cast<double>(cell_m);
     std::vector<WalledPart> parts = walledParts(derivation, model, cell, among);
-    orderByPlace(std::span(parts));
-    std::vector<std::vector<ThinWalls>> found((parts.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes);
-    probeInGroups(
+    eval::orderByPlace(std::span(parts));
+    std::vector<std::vector<ThinWalls>> found((parts.size() + eval::LocalTapes::mostBoxes - 1) /
+                                              eval::LocalTapes::mostBoxes);
+    eval::probeInGroups(
         std::span(parts), threads, progress, "thin walls", [&] { return WallProber(tape, model.field.bounds, cell_m); },
         [&](WallProber& prober, std::span<const WalledPart> some, std::span<const Box3f> boxes, size_t group) {
             prober.probe(some, boxes, found[group]);

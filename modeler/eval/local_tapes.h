@@ -13,7 +13,7 @@
 #include "modeler/core/progress.h"
 #include "modeler/eval/evaluate.h"
 
-namespace sgm::lower {
+namespace sgm::eval {
 
 /// One worker's.
 class LocalTapes {
@@ -22,7 +22,7 @@ public:
     static constexpr size_t mostBoxes = boxesPerTape * boxesPerTape;  ///< at once
 
     /// `tape` has to stay.
-    explicit LocalTapes(const eval::Tape& tape) : tape_(tape) {}
+    explicit LocalTapes(const Tape& tape) : tape_(tape) {}
 
     /// Shortens the tape to a box, once for all boxes within it.
     void shortenAround(const Box3f& box) { shortenTo(tape_, {&box, 1}, {&around_, 1}); }
@@ -48,12 +48,12 @@ public:
                 if (!each_[i].isEmpty) visit(k * boxesPerTape + i, std::as_const(each_[i].tape));
         }
     }
-    eval::Workspace& workspace() { return workspace_; }
+    Workspace& workspace() { return workspace_; }
 
 private:
     /// A tape for a box.
     struct Local {
-        eval::Tape tape;
+        Tape tape;
         bool isEmpty = true;  ///< no surface may be there
     };
 
@@ -63,25 +63,24 @@ private:
         return all;
     }
     /// Leaves in `to` what matters in each box.
-    void shortenTo(const eval::Tape& from, std::span<const Box3f> boxes, std::span<Local> to) {
-        std::array<eval::FloatInterval, mostBoxes> ranges;
-        const eval::RangeTrace trace =
-            eval::evaluateRanges(from, {boxes.data(), boxes.size()}, ranges.data(), workspace_);
+    void shortenTo(const Tape& from, std::span<const Box3f> boxes, std::span<Local> to) {
+        std::array<FloatInterval, mostBoxes> ranges;
+        const RangeTrace trace = evaluateRanges(from, {boxes.data(), boxes.size()}, ranges.data(), workspace_);
         for (size_t i = 0; i < boxes.size(); ++i) {
             to[i].isEmpty = ranges[i].lo > 0 || ranges[i].hi < 0;
-            if (!to[i].isEmpty) eval::shorten(from, trace, i, workspace_, to[i].tape);
+            if (!to[i].isEmpty) shorten(from, trace, i, workspace_, to[i].tape);
         }
     }
 
-    const eval::Tape& tape_;
+    const Tape& tape_;
     Local around_, all_;
     std::array<Local, mostBoxes / boxesPerTape> groups_;
     std::array<Local, boxesPerTape> each_;
-    eval::Workspace workspace_;
+    Workspace workspace_;
 };
 
 /// A field's slope as far as it is believed: fractals' bound is hundreds, which they have nowhere.
-inline float believedSlope(const eval::Tape& tape) { return std::clamp(tape.lipschitz(), 1.0f, 4.0f); }
+inline float believedSlope(const Tape& tape) { return std::clamp(tape.lipschitz(), 1.0f, 4.0f); }
 
 /// Points as the evaluation takes them.
 struct PointList {
@@ -90,17 +89,17 @@ struct PointList {
     void add(Vec3f p) { x.push_back(p.x), y.push_back(p.y), z.push_back(p.z); }
     Vec3f operator[](size_t i) const { return {x[i], y[i], z[i]}; }
     size_t size() const { return x.size(); }
-    eval::Points points() const { return {x.data(), y.data(), z.data(), x.size()}; }
+    Points points() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
 /// Whose surface points lie on. One worker's.
 class SurfaceOwners {
 public:
     /// By point; 0 where another part's surface is the same, for a mesh may have it as that part's.
-    const std::vector<OriginId>& at(const PointList& points, const eval::Tape& tape, eval::Workspace& workspace) {
+    const std::vector<OriginId>& at(const PointList& points, const Tape& tape, Workspace& workspace) {
         owners_.resize(points.size()), tied_.resize(points.size()), labels_.resize(points.size());
-        eval::evaluateOrigin(tape, points.points(), owners_.data(), workspace);
-        eval::evaluateLabels(tape, points.points(), labels_.data(), tied_.data(), workspace);
+        evaluateOrigin(tape, points.points(), owners_.data(), workspace);
+        evaluateLabels(tape, points.points(), labels_.data(), tied_.data(), workspace);
         for (size_t i = 0; i < owners_.size(); ++i)
             if (tied_[i] != owners_[i]) owners_[i] = 0;
         return owners_;
@@ -114,36 +113,37 @@ private:
     std::vector<uint32_t> labels_;
 };
 
-/// Orders items, which have a scope and the number of a part, so that those that LocalTapes takes together lie beside
-/// each other: halves of the list, and halves of these, cut between groups. O(n log² n).
+/// Orders items, which have a centre() and a number(), so that those that LocalTapes takes together lie beside each
+/// other: halves of the list, and halves of these, cut between groups. O(n log² n).
 template <class Item>
 void orderByPlace(std::span<Item> items) {
     if (items.size() <= LocalTapes::boxesPerTape) return;
     size_t group = LocalTapes::boxesPerTape;
     while (group * LocalTapes::boxesPerTape < items.size()) group *= LocalTapes::boxesPerTape;
     Box3d box;
-    for (const Item& item : items) box = hull(box, item.scope.centre);
+    for (const Item& item : items) box = hull(box, item.centre());
     const Vec3d size = box.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const size_t middle = std::max<size_t>(items.size() / 2 / group, 1) * group;
     std::nth_element(items.begin(), items.begin() + static_cast<ptrdiff_t>(middle), items.end(),
                      [&](const Item& a, const Item& b) {
-                         return std::pair(a.scope.centre[axis], a.part) < std::pair(b.scope.centre[axis], b.part);
+                         return std::pair(a.centre()[axis], a.number()) < std::pair(b.centre()[axis], b.number());
                      });
     orderByPlace(items.first(middle));
     orderByPlace(items.subspan(middle));
 }
 
 /// Calls probe(prober, items, boxes, number of the group) for groups of at most LocalTapes::mostBoxes items that follow
-/// each other, on `threads` threads (0: all), each with a prober that `make` makes; ticks for every item. A prober has
-/// boxOf(item), in which it looks, and tapes(), which are shortened around the boxes.
+/// each other, on `threads` threads (0: all), each with a prober that `make` makes; ticks for every item, or, where
+/// `stage` is null, is a part of a stage that has begun. A prober has boxOf(item), in which it looks, and tapes(),
+/// which are shortened around the boxes.
 template <class Item, class Make, class Probe>
 void probeInGroups(std::span<Item> items, int threads, Progress* progress, const char* stage, Make make, Probe probe) {
     constexpr size_t groupsAtOnce = LocalTapes::boxesPerTape;
     std::vector<decltype(make())> probers;
     probers.reserve(static_cast<size_t>(threadCount(threads)));
     for (int w = 0; w < threadCount(threads); ++w) probers.push_back(make());
-    if (progress) progress->begin(stage, items.size());
+    if (progress && stage) progress->begin(stage, items.size());
     const size_t groups = (items.size() + LocalTapes::mostBoxes - 1) / LocalTapes::mostBoxes;
     const auto itemsOf = [&](size_t group) {
         const size_t first = group * LocalTapes::mostBoxes;
@@ -162,9 +162,9 @@ void probeInGroups(std::span<Item> items, int threads, Progress* progress, const
         prober.tapes().shortenAround(around);
         for (size_t g = first; g < end && !cancelled(progress); ++g) {
             probe(prober, itemsOf(g), boxes[g - first], g);
-            for (size_t i = 0; i < itemsOf(g).size(); ++i) tick(progress);
+            for (size_t i = 0; stage && i < itemsOf(g).size(); ++i) tick(progress);
         }
     });
 }
 
-}  // namespace sgm::lower
+}  // namespace sgm::eval
