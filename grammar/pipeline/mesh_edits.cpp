@@ -28,10 +28,12 @@ Result<mesh::Mesh> edited(mesh::Mesh mesh, const MeshEdits& edits, const MeshSou
     }
     const double tolerance_m = toleranceOf(edits, surface, source.cell_m);
     if ((edits.simplify < 1 || tolerance_m > 0) && mesh.triangleCount() > 0) {
+        const bool hasCreases = surface == mesh::Surface::Crisp && edits.smooth == 0;
+        const mesh::SimplifyOptions options{tolerance_m, context.threads, edits.pieces,
+                                            hasCreases ? &source.field : nullptr};
         auto result = context.timed("simplify", [&] {
-            return edits.simplify < 1
-                       ? mesh::simplifyToShare(mesh, edits.simplify, context.threads, context.progress)
-                       : mesh::simplify(mesh, {tolerance_m, context.threads, edits.pieces}, context.progress);
+            return edits.simplify < 1 ? mesh::simplifyToShare(mesh, edits.simplify, context.threads, context.progress)
+                                      : mesh::simplify(mesh, options, context.progress);
         });
         if (!result.ok()) return result;
         mesh = std::move(*result);

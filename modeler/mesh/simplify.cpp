@@ -7,6 +7,7 @@
 #include "modeler/core/parallel.h"
 #include "modeler/mesh/apart.h"
 #include "modeler/mesh/components.h"
+#include "modeler/mesh/curved_edges.h"
 #include "modeler/mesh/faults.h"
 #include "modeler/mesh/planar_merge.h"
 #include "modeler/mesh/planar_split.h"
@@ -233,6 +234,16 @@ Result<Mesh> simplifyWithin(const Mesh& mesh, double tolerance_m, double roundin
     }
 }
 
+/// The same, with curved edges split where the options have a field.
+Result<Mesh> simplifyPiece(const Mesh& mesh, const SimplifyOptions& options, double rounding_m, int threads,
+                           Progress* progress) {
+    auto made = simplifyWithin(mesh, options.tolerance_m, rounding_m, threads, progress);
+    if (!made.ok() || !options.field || !(options.tolerance_m > 0)) return made;
+    const auto split = splitCurvedEdges(*made, *options.field, options.tolerance_m, threads, progress);
+    if (!split.ok()) return split.error();
+    return made;
+}
+
 /// Pieces that are large share the threads, each of the others has one of them.
 class PieceSimplifier {
 public:
@@ -260,7 +271,7 @@ private:
     static constexpr size_t largeTriangles = 1 << 17;
 
     void make(size_t i, int threads) {
-        auto mesh = simplifyWithin(pieces_[i], options_.tolerance_m, rounding_m_, threads, progress_);
+        auto mesh = simplifyPiece(pieces_[i], options_, rounding_m_, threads, progress_);
         if (mesh.ok()) {
             made_[i] = std::make_shared<const Mesh>(std::move(*mesh));
             return;
@@ -315,7 +326,7 @@ Result<Mesh> simplify(const Mesh& mesh, const SimplifyOptions& options, Progress
     const double rounding_m = roundingOf(mesh);
     // Surfaces move by the tolerance at most.
     std::vector<Mesh> pieces = splitApart(mesh, 4 * std::max(options.tolerance_m, rounding_m), options.threads);
-    if (pieces.empty()) return simplifyWithin(mesh, options.tolerance_m, rounding_m, options.threads, progress);
+    if (pieces.empty()) return simplifyPiece(mesh, options, rounding_m, options.threads, progress);
     if (options.pieces) options.pieces->begin(options.tolerance_m, rounding_m);
     auto made = PieceSimplifier(pieces, options, rounding_m, progress).run();
     if (!made.ok()) return made.error();

@@ -8,6 +8,7 @@
 
 #include "modeler/core/progress.h"
 #include "modeler/core/result.h"
+#include "modeler/eval/tape.h"
 #include "modeler/mesh/mesh.h"
 
 namespace sgm::mesh {
@@ -38,6 +39,7 @@ struct SimplifyOptions {
     double tolerance_m = 0;
     int threads = 1;                     ///< 0: all the machine has; the result is the same for any number
     SimplifiedPieces* pieces = nullptr;  ///< of the call before; the result is the same with it and without
+    const eval::Tape* field = nullptr;   ///< the mesh's own; where it is given, curved edges are split (curved_edges.h)
 };
 
 /// What a crisp mesh of such cells is simplified to unless the user says otherwise, metres: a hundredth of a cell.

@@ -1,5 +1,7 @@
-// What refine.cpp, simplify.cpp, tips.cpp, triangulate.cpp and validate_exactly.cpp do in a build without CGAL.
+// What curved_edges.cpp, refine.cpp, simplify.cpp, tips.cpp, triangulate.cpp and validate_exactly.cpp do in a build
+// without CGAL.
 #include "modeler/core/packages.h"
+#include "modeler/mesh/curved_edges.h"
 #include "modeler/mesh/refine.h"
 #include "modeler/mesh/simplify.h"
 #include "modeler/mesh/tips.h"
@@ -19,6 +21,8 @@ Result<Mesh> simplify(const Mesh&, const SimplifyOptions&, Progress*) {
 }
 
 Result<size_t> completeTips(Mesh&, const eval::Tape&, float, int, Progress*) { return size_t{0}; }
+
+Result<size_t> splitCurvedEdges(Mesh&, const eval::Tape&, double, int, Progress*) { return size_t{0}; }
 
 Result<CellSet> refineCells(Mesh&, const eval::Tape&, const Grid&, const CellSet&, const RefineOptions&, Progress*) {
     return CellSet{};
