@@ -1,5 +1,4 @@
 #include "grammar/lower/thin_sections.h"
-#include "modeler/eval/local_tapes.h"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,7 @@
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
 #include "grammar/lower/scope_lines.h"
+#include "modeler/eval/local_tapes.h"
 
 namespace sgm::lower {
 namespace {

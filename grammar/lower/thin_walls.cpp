@@ -1,5 +1,4 @@
 #include "grammar/lower/thin_walls.h"
-#include "modeler/eval/local_tapes.h"
 
 #include <algorithm>
 #include <array>
@@ -12,24 +11,17 @@
 #include "grammar/lower/cutters.h"
 #include "grammar/lower/met_segments.h"
 #include "grammar/lower/scope_lines.h"
+#include "grammar/lower/surface_lines.h"
+#include "modeler/eval/local_tapes.h"
 #include "modeler/field/convex.h"
 #include "modeler/field/plan_parameters.h"
 
 namespace sgm::lower {
 namespace {
 
-constexpr int fewestAlong = 4;  ///< lines along an axis
-/// How closely a part is looked at.
-struct Density {
-    int mostAlong;        ///< lines along an axis
-    size_t mostFollowed;  ///< points of the part's surface
-};
-constexpr Density first{16, 384}, close{128, 8192};  ///< close where walls are too thin: strips may be lost
-constexpr double leastThin = 0.1;                    ///< share of a shell's surface that is too thin
-constexpr int mostSteps = 400;                       ///< on a line
-constexpr float stepShare = 0.9f;                    ///< of how far the surface is at least
-constexpr double leastStep = 0.06;                   ///< in cells
-constexpr int halvings = 8;                          ///< of a step around a crossing
+constexpr SurfaceLines::Density first{16, 384},
+    close{128, 8192};              ///< close where walls are too thin: strips may be lost
+constexpr double leastThin = 0.1;  ///< share of a shell's surface that is too thin
 /// In cells, from the surface into the solid.
 constexpr std::array depths{0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75};
 
@@ -78,17 +70,11 @@ Mat3 axesAlong(Vec3d z) {
     return {x, cross(z, x), z};
 }
 
-/// A step on a line at the ends of which the field has other signs.
-struct Bracket {
-    Vec3d from, to;
-    Vec3d middle() const { return (from + to) * 0.5; }
-};
-
 /// One worker's.
 class WallProber {
 public:
     WallProber(const eval::Tape& tape, const Box3f& bounds, float cell_m)
-        : tapes_(tape), bounds_(bounds), cell_m_(static_cast<double>(cell_m)) {}
+        : tapes_(tape), surface_(bounds, cell_m), cell_m_(static_cast<double>(cell_m)) {}
 
     Box3f boxOf(const WalledPart& part) const {
         return derive::boxOf(part.scope, lineReach).inflated((depths.back() + 1) * cell_m_).as<float>();
@@ -100,14 +86,6 @@ public:
     }
 
 private:
-    /// A line, and how far along it the field has been followed.
-    struct Ray {
-        Vec3d from, along;
-        double at_m = 0, end_m = 0;
-        float value = 0;
-        Vec3d place() const { return from + along * at_m; }
-    };
-
     void probePart(const WalledPart& part, const eval::Tape& tape, std::vector<ThinWalls>& found) {
         ThinWalls walls = wallsOf(part, tape, first);
         if (part.shell_m > 0 && walls.spacing_m > cell_m_ &&
@@ -118,121 +96,19 @@ private:
         if (!walls.lines.empty()) found.push_back(std::move(walls));
     }
 
-    ThinWalls wallsOf(const WalledPart& part, const eval::Tape& tape, const Density& density) {
-        ThinWalls walls{part, listLines(part.scope, density.mostAlong), 0, {}, {}, 0};
-        followLines(tape);
-        walls.spacing_m *= keepOwn(part.part, tape, density.mostFollowed);
-        walls.points = surface_.size();
-        if (!surface_.empty()) measure(tape, walls.lines);
+    ThinWalls wallsOf(const WalledPart& part, const eval::Tape& tape, const SurfaceLines::Density& density) {
+        ThinWalls walls{part, 0, 0, {}, {}, 0};
+        walls.spacing_m = surface_.find(part.scope, part.part, density, tape, tapes_.workspace());
+        walls.points = surface_.found().size();
+        if (walls.points > 0) measure(tape, walls.lines);
         return walls;
-    }
-
-    /// Lines along the scope's axes, as far as they lie in the bounds. Returns how far apart they are at most.
-    double listLines(const derive::Scope& scope, int mostAlong) {
-        rays_.clear();
-        double spacing_m = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-            const auto count = [&](int across) {
-                return static_cast<int>(std::clamp(std::ceil(scope.size[across] / cell_m_), double{fewestAlong},
-                                                   static_cast<double>(mostAlong)));
-            };
-            const int alongU = count(u), alongV = count(v);
-            spacing_m = std::max({spacing_m, scope.size[u] / alongU, scope.size[v] / alongV});
-            for (int j = 0; j < alongV; ++j)
-                for (int i = 0; i < alongU; ++i) {
-                    Vec3d share{};
-                    // Off the middle, so that no line lies in a plane of symmetry.
-                    share[u] = 2 * (i + 0.535) / alongU - 1, share[v] = 2 * (j + 0.535) / alongV - 1;
-                    share[axis] = -lineReach;
-                    addLine(scope.point(share), scope.axes * alongAxis(axis), scope.size[axis] * lineReach);
-                }
-        }
-        return spacing_m;
-    }
-
-    /// Clips a line to the bounds.
-    void addLine(Vec3d from, Vec3d along, double length_m) {
-        double begin = 0, end = length_m;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double low = static_cast<double>(bounds_.lo[axis]) - cell_m_ - from[axis],
-                         high = static_cast<double>(bounds_.hi[axis]) + cell_m_ - from[axis];
-            if (std::abs(along[axis]) < 1e-9) {
-                if (low > 0 || high < 0) return;
-                continue;
-            }
-            const double toLow = low / along[axis], toHigh = high / along[axis];
-            begin = std::max(begin, std::min(toLow, toHigh)), end = std::min(end, std::max(toLow, toHigh));
-        }
-        if (begin < end) rays_.push_back({from, along, begin, end, 0});
-    }
-
-    /// Leaves in `surface_` where lines cross the field's surface: each step is about as long as the field says.
-    void followLines(const eval::Tape& tape) {
-        surface_.clear();
-        const auto placeAll = [&] {
-            points_.clear();
-            for (const Ray& ray : rays_) points_.add(ray.place().as<float>());
-            evaluate(tape);
-        };
-        const float share = stepShare / eval::believedSlope(tape);
-        placeAll();
-        for (size_t i = 0; i < rays_.size(); ++i) rays_[i].value = values_[i];
-        for (int step = 0; step < mostSteps && !rays_.empty(); ++step) {
-            std::vector<Vec3d> before;
-            for (Ray& ray : rays_) {
-                before.push_back(ray.place());
-                const auto far_m = static_cast<double>(share * std::abs(ray.value));
-                ray.at_m = std::min(ray.at_m + std::max(far_m, leastStep * cell_m_), ray.end_m);
-            }
-            placeAll();
-            size_t kept = 0;
-            for (size_t i = 0; i < rays_.size(); ++i) {
-                Ray ray = rays_[i];
-                if ((ray.value < 0) != (values_[i] < 0)) surface_.push_back({before[i], ray.place()});
-                ray.value = values_[i];
-                if (ray.at_m < ray.end_m) rays_[kept++] = ray;
-            }
-            rays_.resize(kept);
-        }
-        halve(surface_, tape);
-    }
-
-    /// Halves the steps around crossings.
-    void halve(std::vector<Bracket>& brackets, const eval::Tape& tape) {
-        points_.clear();
-        for (const Bracket& b : brackets) points_.add(b.from.as<float>());
-        evaluate(tape);
-        const std::vector<float> atStart = values_;
-        for (int halving = 0; halving < halvings; ++halving) {
-            points_.clear();
-            for (const Bracket& b : brackets) points_.add(b.middle().as<float>());
-            evaluate(tape);
-            for (size_t i = 0; i < brackets.size(); ++i)
-                ((atStart[i] < 0) == (values_[i] < 0) ? brackets[i].from : brackets[i].to) = brackets[i].middle();
-        }
-    }
-
-    /// Keeps what is the part's own surface, not too much of it. Returns how much farther apart that is than the lines.
-    double keepOwn(OriginId part, const eval::Tape& tape, size_t mostFollowed) {
-        points_.clear();
-        for (const Bracket& b : surface_) points_.add(b.middle().as<float>());
-        const std::vector<OriginId>& owners = owners_.at(points_, tape, tapes_.workspace());
-        size_t own = 0;
-        for (size_t i = 0; i < surface_.size(); ++i)
-            if (owners[i] == part) surface_[own++] = surface_[i];
-        const size_t stride = std::max<size_t>((own + mostFollowed - 1) / mostFollowed, 1);
-        size_t kept = 0;
-        for (size_t i = 0; i < own; i += stride) surface_[kept++] = surface_[i];
-        surface_.resize(kept);
-        return std::sqrt(static_cast<double>(stride));
     }
 
     /// Goes from the surface straight into the solid.
     void measure(const eval::Tape& tape, std::vector<WallLine>& lines) {
         points_.clear();
-        for (const Bracket& b : surface_) points_.add(b.middle().as<float>());
-        const size_t count = surface_.size();
+        for (const SurfaceLines::Bracket& b : surface_.found()) points_.add(b.middle().as<float>());
+        const size_t count = surface_.found().size();
         std::vector<float> dx(count), dy(count), dz(count);
         values_.resize(count);
         eval::evaluateGradient(tape, points_.points(), values_.data(), dx.data(), dy.data(), dz.data(),
@@ -240,13 +116,13 @@ private:
         std::vector<Vec3d> from, inward;
         for (size_t i = 0; i < count; ++i) {
             const Vec3d out = normalized(Vec3d{dx[i], dy[i], dz[i]});
-            if (out != Vec3d{}) from.push_back(surface_[i].middle()), inward.push_back(-out);
+            if (out != Vec3d{}) from.push_back(surface_.found()[i].middle()), inward.push_back(-out);
         }
         points_.clear();
         for (size_t i = 0; i < from.size(); ++i)
             for (const double depth : depths) points_.add((from[i] + inward[i] * (depth * cell_m_)).as<float>());
         evaluate(tape);
-        std::vector<Bracket> beyond;
+        std::vector<SurfaceLines::Bracket> beyond;
         std::vector<size_t> of;
         for (size_t i = 0; i < from.size(); ++i) {
             const float* const values = values_.data() + i * depths.size();
@@ -259,7 +135,7 @@ private:
             beyond.push_back({from[i] + inward[i] * (before * cell_m_), from[i] + inward[i] * (depths[k] * cell_m_)});
             of.push_back(i);
         }
-        halve(beyond, tape);
+        surface_.halve(beyond, tape, tapes_.workspace());
         for (size_t i = 0; i < beyond.size(); ++i) {
             const Vec3d at = from[of[i]], n = inward[of[i]];
             const double thickness_m = dot(beyond[i].middle() - at, n);
@@ -273,13 +149,10 @@ private:
     }
 
     eval::LocalTapes tapes_;
-    Box3f bounds_;
+    SurfaceLines surface_;
     double cell_m_;
-    std::vector<Ray> rays_;
-    std::vector<Bracket> surface_;
     eval::PointList points_;
     std::vector<float> values_;
-    eval::SurfaceOwners owners_;
 };
 
 /// The least thickness of walls and shells that a solid's parameters say, metres; infinite where they say none.

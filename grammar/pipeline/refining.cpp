@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "grammar/lower/thin_cells.h"
+#include "grammar/lower/torn_rims.h"
 #include "modeler/mesh/refine.h"
 #include "modeler/mesh/region.h"
 
@@ -36,7 +37,8 @@ public:
         auto missing = hold(lower::findMissingParts);
         if (!missing.ok()) return missing;
         const double seconds = halvingSeconds_;
-        if (const auto torn = hold(lower::findTornParts); !torn.ok()) return torn;
+        for (Finder* const torn : {lower::findTornParts, lower::findTornRims})
+            if (const auto left = hold(*torn); !left.ok()) return left;
         if (halvingSeconds_ > seconds && !missing->empty()) missing = find(lower::findMissingParts, &*missing);
         context_.stages.emplace_back("thin parts", findingSeconds_);
         if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
