@@ -11,6 +11,8 @@ namespace {
 constexpr int mostLooks = 2;              ///< times that the field is looked at below a border
 constexpr double depthShare = 0.5625;     ///< of a bracket's length: how far below its middle
 constexpr double besideShare = 0x1.0p-9;  ///< of a cell, between a border and where its sides are looked at
+constexpr double tiesReach = 2;           ///< of the margin of ties: at least as far as that from the wall
+constexpr double leastRise = 0.125;       ///< of a gap into its wall, a metre: flatter ones are looked at as for that
 constexpr int besideRounds = 3;           ///< times that both sides are looked at, as the surface may bend
 constexpr size_t borderParts = 4;         ///< of a border's bracket, one of which is the next: few rounds fill vectors
 constexpr int borderRounds = 6;           ///< 4^-6 of a segment is left
@@ -33,6 +35,15 @@ size_t FaceCreases::samplesOf(State state) {
     }
 }
 
+/// How far beside a border its pieces are looked at along the gap, metres: beyond where the fields of both tie, for
+/// there the wall between them has the point. The flatter the gap runs into the wall, the farther that is.
+double FaceCreases::besideReach(const Gap& gap) const {
+    const Vec3d out = normalized(gap.wall.point.gradient.as<double>());
+    const double rise = std::abs(dot(out, normalized((gap.nearB.point.at - gap.nearA.point.at).as<double>())));
+    const double ties = tiesReach * double{tapes_.whole->tieMargin()} / std::max(rise, leastRise);
+    return std::max(besideShare * double{grid_->cell_m}, ties);
+}
+
 /// `isFlat`: both pieces lie in one plane.
 void FaceCreases::searchBorder(Gap& gap, bool isFlat) {
     gap.state = State::Border;
@@ -48,7 +59,7 @@ void FaceCreases::askForBorder(const FaceSegment& segment, const Gap& gap) {
     if (gap.state == State::Below)
         return add(low + way * 0.5 - normalized(gap.a.gradient.as<double>()) * (depthShare * length(way)));
     if (gap.state == State::Beside) {
-        const Vec3d step = normalized(way) * (besideShare * grid_->cell_m);
+        const Vec3d step = normalized(way) * besideReach(gap);
         add(gap.at.as<double>() - step);
         return add(gap.at.as<double>() + step);
     }
@@ -89,7 +100,7 @@ bool FaceCreases::takeBeside(const FaceSegment& segment, Gap& gap, size_t sample
     a.point = samples_.point(sample, a.value), b.point = samples_.point(sample + 1, b.value);
     if (!isKnown(a.value) || !isKnown(b.value) || a.point.label != gap.a.label || b.point.label != gap.b.label)
         return false;
-    const double near = besideShare * grid_->cell_m;
+    const double near = besideReach(gap);
     const auto liesOn = [&](const LinearField& f) { return std::abs(f.value) <= near * length(f.point.gradient); };
     if (!liesOn(a) || !liesOn(b)) return ++gap.looks.beside < besideRounds && meetWall(segment, gap, a);
     gap.nearA = a, gap.nearB = b;

@@ -76,6 +76,7 @@ private:
     void takeBorder(const FaceSegment& segment, uint32_t gap, size_t sample);
     bool takeBelow(const FaceSegment& segment, Gap& gap, size_t sample);
     bool takeBeside(const FaceSegment& segment, Gap& gap, size_t sample);
+    double besideReach(const Gap& gap) const;
     bool meetWall(const FaceSegment& segment, Gap& gap, const LinearField& surface) const;
     uint64_t confirmCrossings(const std::vector<FaceSegment>& segments, eval::Workspace& workspace);
     bool moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const;

@@ -230,6 +230,35 @@ TEST(Crisp, BordersInAPlaneLieOnTheWallBetweenTwoParts) {
     }
 }
 
+TEST(Crisp, BordersOfAWideFieldLieOnTheWallTooWhereTiesReachFar) {
+    for (const double degrees : {8.0, 31.0, 75.0}) {
+        Scene s;
+        const double a = degrees * 3.14159265358979 / 180;
+        const Vec3f along = Vec3d{std::cos(a), 0, std::sin(a)}.as<float>();
+        const field::NodeRef side = s.graph.x() * along.x + s.graph.z() * along.z - 3.1f,
+                             whole = block(s.graph, {}, {41, 9, 39}).value;
+        const float reach = 4096;  // values within 1/128 m of each other tie
+        const Box3f bounds{{-reach, -reach, -reach}, {reach, reach, reach}};
+        const field::Owned both[] = {{{max(whole, side), bounds, 1, 0.5f}, 1},
+                                     {{max(whole, -side), bounds, 1, 0.5f}, 2}};
+        s.field = field::sum(s.graph, both);
+        const Grid grid{{-48, -48, -48}, 2, {48, 48, 48}};
+        Counts counts;
+        const auto blocks = subdivide(s.tape(), grid, 1, nullptr, counts);
+        ASSERT_TRUE(blocks.ok());
+        const auto mesh = polygonize(*blocks, grid, crisp, nullptr, counts);
+        ASSERT_TRUE(mesh.ok());
+        size_t ends = 0, off = 0;  // off are those beside a vertex of the grid that ties itself, and corners at rims
+        for (const auto& [from, to] : borderEdges(*mesh))
+            for (const Vec3f end : {from, to}) {
+                ++ends;
+                off += std::abs(double{end.x} * along.x + double{end.z} * along.z - 3.1) > 1e-4;
+            }
+        EXPECT_GT(ends, 100u) << degrees;
+        EXPECT_LT(off, ends / 4) << degrees;
+    }
+}
+
 TEST(Crisp, BordersOfThreePartsInOnePlaneMeetInACorner) {
     for (int place = 0; place < 8; ++place) {
         Scene s;
