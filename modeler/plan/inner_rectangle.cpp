@@ -1,5 +1,6 @@
 // The largest rectangle along the axes inside a footprint.
 #include <algorithm>
+#include <span>
 
 #include "modeler/plan/edit.h"
 
@@ -11,27 +12,54 @@ struct Interval {
 };
 using Intervals = std::vector<Interval>;
 
-/// What of z lies inside all over a strip of x in which no corner lies: edges are straight across it.
-Intervals insideStrip(const std::vector<PlacedEdge>& edges, double lo, double hi) {
+/// Strips of x between neighbouring places, one after the other, and what of z lies inside all over each.
+class Strips {
+public:
+    Strips(const std::vector<PlacedEdge>& edges, const std::vector<double>& at) {
+        for (size_t i = 0; i + 1 < at.size(); ++i) {
+            add(edges, at[i], at[i + 1]);
+            double most = 0;
+            for (const Interval& z : inside(i)) most = std::max(most, z.hi - z.lo);
+            tallest_.push_back(most);
+        }
+    }
+    size_t size() const { return tallest_.size(); }
+    std::span<const Interval> inside(size_t strip) const {
+        return std::span(intervals_).subspan(first_[strip], first_[strip + 1] - first_[strip]);
+    }
+    /// The longest interval of a strip.
+    double tallest(size_t strip) const { return tallest_[strip]; }
+
+private:
     struct Crossing {
         double middle, least, most;
     };
-    std::vector<Crossing> crossings;
-    const double at = (lo + hi) / 2;
-    for (const PlacedEdge& e : edges) {
-        if ((e.from.x <= at) == (e.to.x <= at)) continue;
-        const auto z = [&](double x) { return e.from.z + (x - e.from.x) / (e.to.x - e.from.x) * (e.to.z - e.from.z); };
-        crossings.push_back({z(at), std::min(z(lo), z(hi)), std::max(z(lo), z(hi))});
+    /// A strip in which no corner lies: edges are straight across it.
+    void add(const std::vector<PlacedEdge>& edges, double lo, double hi) {
+        crossings_.clear();
+        const double at = (lo + hi) / 2;
+        for (const PlacedEdge& e : edges) {
+            if ((e.from.x <= at) == (e.to.x <= at)) continue;
+            const auto z = [&](double x) {
+                return e.from.z + (x - e.from.x) / (e.to.x - e.from.x) * (e.to.z - e.from.z);
+            };
+            crossings_.push_back({z(at), std::min(z(lo), z(hi)), std::max(z(lo), z(hi))});
+        }
+        std::sort(crossings_.begin(), crossings_.end(),
+                  [](const Crossing& a, const Crossing& b) { return a.middle < b.middle; });
+        for (size_t i = 0; i + 1 < crossings_.size(); i += 2)
+            if (crossings_[i + 1].least > crossings_[i].most)
+                intervals_.push_back({crossings_[i].most, crossings_[i + 1].least});
+        first_.push_back(intervals_.size());
     }
-    std::sort(crossings.begin(), crossings.end(),
-              [](const Crossing& a, const Crossing& b) { return a.middle < b.middle; });
-    Intervals inside;
-    for (size_t i = 0; i + 1 < crossings.size(); i += 2)
-        if (crossings[i + 1].least > crossings[i].most) inside.push_back({crossings[i].most, crossings[i + 1].least});
-    return inside;
-}
 
-void common(const Intervals& a, const Intervals& b, Intervals& both) {
+    Intervals intervals_;
+    std::vector<size_t> first_{0};  ///< by strip
+    std::vector<double> tallest_;
+    std::vector<Crossing> crossings_;
+};
+
+void common(std::span<const Interval> a, std::span<const Interval> b, Intervals& both) {
     both.clear();
     for (size_t i = 0, j = 0; i < a.size() && j < b.size();) {
         const double lo = std::max(a[i].lo, b[j].lo), hi = std::min(a[i].hi, b[j].hi);
@@ -46,32 +74,32 @@ double areaOf(const Box2& box) { return box.size().x * box.size().z; }
 /// and what can't reach it isn't looked at.
 std::optional<Box2> largest(const std::vector<PlacedEdge>& edges, const std::vector<double>& at,
                             const std::optional<Box2>& known = {}) {
-    std::vector<Intervals> strips;
-    std::vector<double> tallest;
-    for (size_t i = 0; i + 1 < at.size(); ++i) {
-        strips.push_back(insideStrip(edges, at[i], at[i + 1]));
-        tallest.push_back(0);
-        for (const Interval& z : strips.back()) tallest.back() = std::max(tallest.back(), z.hi - z.lo);
-    }
+    const Strips strips(edges, at);
     std::optional<Box2> best;
     double most = known ? (1 - 1e-9) * areaOf(*known) : 0;
     // Past the last strip as far as which one that begins with strip i may be larger.
     const auto endFor = [&](size_t i) {
+        if (strips.tallest(i) * (at.back() - at[i]) <= most) return i;
         size_t end = strips.size();
-        while (end > i && std::min(tallest[i], tallest[end - 1]) * (at[end] - at[i]) <= most) --end;
+        while (end > i && std::min(strips.tallest(i), strips.tallest(end - 1)) * (at[end] - at[i]) <= most) --end;
         return end;
     };
     Intervals open, both;
     for (size_t i = 0; i < strips.size(); ++i) {
         const size_t end = endFor(i);
         for (size_t j = i; j < end && (j == i || !open.empty()); ++j) {
+            const std::span<const Interval> inside = strips.inside(j);
             if (j == i)
-                open = strips[i];
+                open.assign(inside.begin(), inside.end());
             else
-                common(open, strips[j], both), std::swap(open, both);
-            for (const Interval& z : open)
+                common(open, inside, both), std::swap(open, both);
+            double tallest = 0;
+            for (const Interval& z : open) {
+                tallest = std::max(tallest, z.hi - z.lo);
                 if (const double size = (z.hi - z.lo) * (at[j + 1] - at[i]); size > most)
                     most = size, best = Box2{{at[i], z.lo}, {at[j + 1], z.hi}};
+            }
+            if (tallest * (at[end] - at[i]) <= most) break;  // what follows is no taller
         }
     }
     return best ? best : known;
