@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "modeler/eval/evaluate.h"
 #include "modeler/mesh/chunk.h"
+#include "modeler/mesh/region.h"
 #include "modeler/tiles/skirt.h"
 
 namespace sgm::pipeline {
@@ -24,15 +26,41 @@ bool isExact(double step) {
     return std::frexp(step, &exponent) == .5 && exponent > -12;
 }
 
-/// A cell's blocks in a grid: columns [x, x + side) × [z, z + side).
-struct Columns {
-    int x, z, side;
-    bool has(int bx, int bz) const { return bx >= x && bx < x + side && bz >= z && bz < z + side; }
-    /// Whether a region of `size` blocks touches them, or the ring below, which lends vertices.
-    bool touches(int x0, int z0, int size) const {
-        return x0 < x + side && x0 + size > x - 1 && z0 < z + side && z0 + size > z - 1;
+/// The cell whose tape a block is made with: the one that has it, else the first that needs it.
+size_t makerOf(const std::vector<BlockColumns>& cells, int bx, int bz) {
+    const auto owner = std::find_if(cells.begin(), cells.end(), [&](const BlockColumns& c) { return c.has(bx, bz); });
+    if (owner != cells.end()) return static_cast<size_t>(owner - cells.begin());
+    const auto first =
+        std::find_if(cells.begin(), cells.end(), [&](const BlockColumns& c) { return c.touches(bx, bz, 1); });
+    return static_cast<size_t>(first - cells.begin());
+}
+
+/// What a block of the ring lends: the bricks and cells at its high sides that a block of some cell meets; null for a
+/// block of a cell, which is made whole.
+std::shared_ptr<const mesh::PartOfBlock> partOf(const std::vector<BlockColumns>& cells, int bx, int bz) {
+    const auto any = [&](int x, int z) {
+        return std::any_of(cells.begin(), cells.end(), [&](const BlockColumns& c) { return c.has(x, z); });
+    };
+    if (any(bx, bz)) return nullptr;
+    const bool beyondX = any(bx + 1, bz), beyondZ = any(bx, bz + 1), beyondBoth = any(bx + 1, bz + 1);
+    mesh::PartOfBlock part{.cubeCells = 2};
+    constexpr int cubes = mesh::brickCells / 2;
+    uint64_t atX = 0, atZ = 0;  // cubes of a brick
+    for (int cube = 0; cube < cubes * cubes * cubes; ++cube) {
+        atX |= uint64_t{cube % cubes == cubes - 1} << cube;
+        atZ |= uint64_t{cube / (cubes * cubes) == cubes - 1} << cube;
     }
-};
+    for (int number = 0; number < mesh::bricksPerBlock; ++number) {
+        const Vec3i brick = mesh::brickAt(number);
+        const bool lastX = brick.x == mesh::bricksAlong - 1, lastZ = brick.z == mesh::bricksAlong - 1;
+        uint64_t& lent = part.cubes[static_cast<size_t>(number)];
+        if (lastX && beyondX) lent |= atX;
+        if (lastZ && beyondZ) lent |= atZ;
+        if (lastX && lastZ && beyondBoth) lent |= atX & atZ;
+        part.bricks |= uint64_t{lent != 0} << number;
+    }
+    return std::make_shared<const mesh::PartOfBlock>(part);
+}
 
 /// The chunks of some cells, as one list of vertices with the triangles of each cell.
 struct Gathered {
@@ -40,18 +68,28 @@ struct Gathered {
     std::vector<std::vector<uint32_t>> triangles;  ///< by cell of the group
 };
 
-Gathered gather(std::vector<mesh::Chunk> chunks, const std::vector<Columns>& cells) {
+Gathered gather(std::vector<mesh::Chunk> chunks, const std::vector<BlockColumns>& cells) {
     Gathered out;
     out.triangles.resize(cells.size());
     mesh::Numbering numbering;
     static_cast<void>(numbering.add(chunks));
+    const auto ownerOf = [&](const mesh::Chunk& chunk) {
+        const auto owner = std::find_if(cells.begin(), cells.end(),
+                                        [&](const BlockColumns& c) { return c.has(chunk.block.x, chunk.block.z); });
+        return static_cast<size_t>(owner - cells.begin());
+    };
+    std::vector<size_t> count(cells.size() + 1, 0);  // a list that grows holds twice its size for a moment
+    for (const mesh::Chunk& chunk : chunks) count[ownerOf(chunk)] += chunk.triangles.size();
+    const size_t triangles = std::accumulate(count.begin(), count.end() - 1, size_t{0});
+    out.mesh.positions.reserve(numbering.vertices), out.mesh.normals.reserve(numbering.vertices);
+    out.mesh.triangles.reserve(triangles), out.mesh.origins.reserve(triangles);
+    for (size_t i = 0; i < cells.size(); ++i) out.triangles[i].reserve(count[i]);
     for (mesh::Chunk& chunk : chunks) {
         out.mesh.positions.insert(out.mesh.positions.end(), chunk.positions.begin(), chunk.positions.end());
         out.mesh.normals.insert(out.mesh.normals.end(), chunk.normals.begin(), chunk.normals.end());
-        const auto owner = std::find_if(cells.begin(), cells.end(),
-                                        [&](const Columns& c) { return c.has(chunk.block.x, chunk.block.z); });
-        if (owner == cells.end()) continue;
-        auto& list = out.triangles[static_cast<size_t>(owner - cells.begin())];
+        const size_t owner = ownerOf(chunk);
+        if (owner == cells.size()) continue;
+        auto& list = out.triangles[owner];
         mesh::numberGhosts(chunks, chunk);
         for (size_t t = 0; t < chunk.triangles.size(); ++t) {
             list.push_back(static_cast<uint32_t>(out.mesh.triangles.size()));
@@ -61,9 +99,6 @@ Gathered gather(std::vector<mesh::Chunk> chunks, const std::vector<Columns>& cel
     }
     return out;
 }
-
-/// The square of four by four whose ground is made together.
-Cell squareOf(const Cell& cell) { return cell.parent().parent(); }
 
 /// The box around pieces about `centre` and what hangs from them, in the model's frame.
 Box3f spaceOf(const std::vector<tiles::SurfacePiece>& pieces, Vec3d centre, double depth_m) {
@@ -84,7 +119,7 @@ eval::Tape within(const eval::Tape& tape, const Box3f& box, eval::Workspace& wor
 std::vector<Cell> BakedGround::groupOf(const std::vector<Cell>& cells) {
     std::vector<Cell> group;
     for (const Cell& cell : cells)
-        if (cell.level == cells.front().level && squareOf(cell) == squareOf(cells.front())) group.push_back(cell);
+        if (cell.level == cells.front().level && cell.parent() == cells.front().parent()) group.push_back(cell);
     return group;
 }
 
@@ -128,6 +163,39 @@ mesh::Grid BakedGround::gridOver(const std::vector<Cell>& group, Vec3i& corner) 
     return grid;
 }
 
+/// Blocks with surface of some cells and of the rings below them, each found with the tape of its cell.
+Result<std::vector<mesh::Block>> BakedGround::findBlocks(const std::vector<Cell>& group,
+                                                         const std::vector<BlockColumns>& cells, const mesh::Grid& grid,
+                                                         Context& context, mesh::Counts& counts) {
+    std::vector<mesh::Block> blocks;
+    for (size_t cell = 0; cell < cells.size(); ++cell) {
+        mesh::RegionFilter filter;
+        filter.skips = [&](std::span<const Vec3i> indices, int size) {
+            uint64_t skipped = 0;
+            for (size_t i = 0; i < indices.size(); ++i) {
+                const int x = indices[i].x * size, z = indices[i].z * size;
+                const bool isWanted = size == 1 ? makerOf(cells, x, z) == cell : cells[cell].touches(x, z, size);
+                if (!isWanted) skipped |= uint64_t{1} << i;
+            }
+            return skipped;
+        };
+        auto some =
+            mesh::subdivide(tapeOf(group[cell]), grid, context.threads, context.progress, counts, filter, &scratch_);
+        if (!some.ok()) return some.error();
+        std::move(some->begin(), some->end(), std::back_inserter(blocks));
+    }
+    for (mesh::Block& block : blocks) block.part = partOf(cells, block.index.x, block.index.z);
+    std::sort(blocks.begin(), blocks.end(),
+              [](const mesh::Block& a, const mesh::Block& b) { return mesh::zyxLess(a.index, b.index); });
+    return blocks;
+}
+
+const eval::Tape& BakedGround::tapeOf(const Cell& cell) {
+    // The ring below is a block wide, and vertices are looked at a little beyond it.
+    const double block = pitch_m(cell.level) * mesh::blockCells;
+    return tapes_.over(cell, block * 1.125, workspace_);
+}
+
 Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const std::vector<Cell>& group,
                                                                            Context& context) {
     std::map<Cell, std::vector<tiles::SurfacePiece>> made;
@@ -136,45 +204,29 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
     const mesh::Grid grid = gridOver(group, corner);
     const double pitch = pitch_m(group.front().level), side = group.front().side_m(request_.side_m);
     const int blocks = static_cast<int>(std::lround(side / pitch / mesh::blockCells));
-    std::vector<Columns> cells;
+    std::vector<BlockColumns> cells;
     for (const Cell& cell : group) cells.push_back({cell.x * blocks - corner.x, cell.z * blocks - corner.z, blocks});
-    mesh::RegionFilter filter;
-    filter.skips = [&](std::span<const Vec3i> indices, int size) {
-        uint64_t skipped = 0;
-        for (size_t i = 0; i < indices.size(); ++i)
-            if (std::none_of(cells.begin(), cells.end(), [&](const Columns& c) {
-                    return c.touches(indices[i].x * size, indices[i].z * size, size);
-                }))
-                skipped |= uint64_t{1} << i;
-        return skipped;
-    };
     mesh::Counts counts;
-    const eval::Tape& tape = tapes_.over(squareOf(group.front()), workspace_);
-    const auto found = mesh::subdivide(tape, grid, context.threads, context.progress, counts, filter);
+    auto found = findBlocks(group, cells, grid, context, counts);
     if (!found.ok()) return found.error();
     mesh::PolygonizeOptions options{.surface = mesh::Surface::Crisp, .threads = context.threads};
     auto chunks = mesh::meshBlocks(*found, grid, options, context.progress, counts);
     if (!chunks.ok()) return chunks.error();
     const Gathered gathered = gather(std::move(*chunks), cells);
-    Box3f space;
-    for (size_t i = 0; i < group.size(); ++i) {
-        const Vec3d centre = group[i].centre(request_.side_m);
-        auto& pieces = made[group[i]] =
-            tiles::groundPieces(gathered.mesh, gathered.triangles[i], model_.lowered->provenance, centre, pitch);
-        if (!pieces.empty()) space = hull(space, spaceOf(pieces, centre, pitch / 2));
-    }
-    if (request_.levels < 2 || space.empty()) return made;
-    const eval::Tape around = within(tape, space, workspace_);
-    for (auto& [cell, pieces] : made)
-        if (!pieces.empty()) addSkirts(cell, around, pieces);
+    for (size_t i = 0; i < group.size(); ++i)
+        made[group[i]] = tiles::groundPieces(gathered.mesh, gathered.triangles[i], model_.lowered->provenance,
+                                             group[i].centre(request_.side_m), pitch);
+    if (request_.levels < 2) return made;
+    for (const Cell& cell : group)
+        if (auto& pieces = made[cell]; !pieces.empty()) addSkirts(cell, pieces);
     return made;
 }
 
-void BakedGround::addSkirts(const Cell& cell, const eval::Tape& around, std::vector<tiles::SurfacePiece>& pieces) {
+void BakedGround::addSkirts(const Cell& cell, std::vector<tiles::SurfacePiece>& pieces) {
     const Vec3d centre = cell.centre(request_.side_m);
     // Surfaces of neighbouring levels are closer to each other than half a cell of the finer one's grid.
     const double depth = pitch_m(cell.level) / 2;
-    const eval::Tape tape = within(around, spaceOf(pieces, centre, depth), workspace_);
+    const eval::Tape tape = within(tapeOf(cell), spaceOf(pieces, centre, depth), workspace_);
     const tiles::InsideTest inside = [&](const std::vector<Vec3d>& places) {
         std::vector<float> x, y, z, value(places.size());
         for (const Vec3d& place : places) {

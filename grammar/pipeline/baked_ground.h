@@ -20,6 +20,16 @@ struct GroundRequest {
     int levels = 3;
 };
 
+/// A cell's blocks in a grid: columns [x, x + side) × [z, z + side).
+struct BlockColumns {
+    int x, z, side;
+    bool has(int bx, int bz) const { return bx >= x && bx < x + side && bz >= z && bz < z + side; }
+    /// Whether a region of `size` blocks touches them, or the ring below, which lends vertices.
+    bool touches(int x0, int z0, int size) const {
+        return x0 < x + side && x0 + size > x - 1 && z0 < z + side && z0 + size > z - 1;
+    }
+};
+
 class BakedGround {
 public:
     BakedGround(const Model& model, const GroundRequest& request)
@@ -27,8 +37,8 @@ public:
 
     /// Error::Usage where the grid has more cells than can be counted and its cells are no power of two.
     Status check() const;
-    /// The cells whose ground is made together: those of `cells` with the first one's level that lie in the same square
-    /// of four by four, as what is around them is then meshed once.
+    /// The cells whose ground is made together: those of `cells` with the first one's level and parent, for what is
+    /// around them is then meshed once.
     static std::vector<tiles::Cell> groupOf(const std::vector<tiles::Cell>& cells);
     /// The pieces of each, about its centre. Errors of mesh::subdivide and mesh::meshBlocks.
     Result<std::map<tiles::Cell, std::vector<tiles::SurfacePiece>>> make(const std::vector<tiles::Cell>& group,
@@ -39,15 +49,20 @@ public:
     double pitch_m(int level) const { return request_.cell_m * (1 << level); }
 
 private:
-    /// Closes the gaps to neighbours of other levels, by strips on the cell's borders; `around` is a tape that holds
-    /// there.
-    void addSkirts(const tiles::Cell& cell, const eval::Tape& around, std::vector<tiles::SurfacePiece>& pieces);
+    Result<std::vector<mesh::Block>> findBlocks(const std::vector<tiles::Cell>& group,
+                                                const std::vector<BlockColumns>& cells, const mesh::Grid& grid,
+                                                Context& context, mesh::Counts& counts);
+    /// The model's tape around a cell, valid until the next call.
+    const eval::Tape& tapeOf(const tiles::Cell& cell);
+    /// Closes the gaps to neighbours of other levels, by strips on the cell's borders.
+    void addSkirts(const tiles::Cell& cell, std::vector<tiles::SurfacePiece>& pieces);
     mesh::Grid gridOver(const std::vector<tiles::Cell>& group, Vec3i& corner) const;
 
     const Model& model_;
     const GroundRequest request_;
     SquareTapes tapes_;
-    eval::Workspace workspace_;  ///< kept from group to group: its memory is large
+    eval::Workspace workspace_;             ///< kept from group to group: its memory is large
+    std::vector<eval::Workspace> scratch_;  ///< of mesh::subdivide, likewise
 };
 
 }  // namespace sgm::pipeline

@@ -28,6 +28,15 @@ void count(const Tape& tape, size_t n, EvaluationKind asked, Tally* tally) {
     for (const Instruction& in : tape.code()) (*tally)[{in.op, in.count, in.data, asked}] += n;
 }
 
+/// Up to so many regions a trace has rows without room for whole vectors, an eighth of the memory or less: long tapes
+/// are asked about few.
+constexpr size_t fewRegions = 4;
+
+/// Rows of bounds of one instruction: how many its kernel or keepRange writes.
+size_t boundRowsOf(const Instruction& in) {
+    return (field::traits(in.op).chooses ? in.count + 1 : 0) + (needsRange(in) ? 2 : 0);
+}
+
 /// Copies the two rows that `needsRange` speaks of, see UseDefChains::boundRows.
 void keepRange(const Tape& tape, const Instruction& in, const StepContext& c) {
     const field::OpTraits& row = field::traits(in.op);
@@ -195,14 +204,18 @@ RangeTrace evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out
     RangeTrace::Impl& t = trace.impl();
     t.chains.build(tape);
     t.parts.build(tape, t.chains);
-    t.regions = regions.n, t.stride = c.stride;
+    const bool areFew = regions.n <= fewRegions;
+    t.regions = regions.n, t.stride = areFew ? regions.n : c.stride;
     float* const bounds = t.row(0);
     constexpr float infinity = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < tape.size(); ++i) {
         const Instruction& in = tape.code()[i];
-        c.bounds = bounds + t.chains.bounds(i) * c.stride;
+        float* const kept = bounds + t.chains.bounds(i) * t.stride;
+        const size_t rows = areFew ? boundRowsOf(in) : 0;
+        c.bounds = areFew ? w.bounds.get(std::max<size_t>(rows, 1) * c.stride) : kept;
         if (needsRange(in)) keepRange(tape, in, c);
         w.kernels.ranges[static_cast<size_t>(in.op)](in, c);
+        for (size_t r = 0; r < rows; ++r) std::copy_n(c.bounds + r * c.stride, t.stride, kept + r * t.stride);
         if (free.empty() || free.front() != i) continue;
         free = free.subspan(1);
         std::fill_n(rowOf(c, in.out, 2, 0), c.count, -infinity);

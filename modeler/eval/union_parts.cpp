@@ -46,7 +46,13 @@ void UnionParts::classify(const float* bounds, size_t stride, size_t n, Relevant
     }
     regions_.clear();
     for (const Part& part : parts_) {
-        const uint64_t regions = notAbove(bounds + part.bound * stride, most.data(), stride) & asked;
+        const float* const row = bounds + part.bound * stride;
+        uint64_t regions = 0;
+        if (stride % vectorFloats == 0)
+            regions = notAbove(row, most.data(), stride);
+        else
+            for (size_t r = 0; r < n; ++r) regions |= uint64_t{!(row[r] > most[r])} << r;
+        regions &= asked;
         for (uint64_t rest = regions; rest != 0; rest &= rest - 1) ++count[static_cast<size_t>(std::countr_zero(rest))];
         regions_.push_back(regions);
     }

@@ -102,7 +102,7 @@ struct RangeTrace::Impl {
     UseDefChains chains;   ///< of the tape
     UnionParts parts;      ///< likewise
     size_t regions = 0;    ///< that it was asked about
-    size_t stride = 0;     ///< floats of a row of bounds: the regions, rounded up
+    size_t stride = 0;     ///< floats of a row of bounds: the regions, rounded up where they are many
     AlignedFloats bounds;  ///< see UseDefChains::bounds
 
     float* row(uint32_t number) { return bounds.get(chains.boundRows() * stride) + size_t{number} * stride; }
@@ -119,6 +119,7 @@ struct alignas(128) Workspace::Impl : OwnerRegisters, PathRegisters {
     Tally* tally = nullptr;  ///< where operations are counted, if at all
     AlignedFloats registers, arguments;
     AlignedFloats points;  ///< copies of coordinates that aren't padded
+    AlignedFloats bounds;  ///< rows of one instruction, where a trace keeps fewer floats than kernels write
     std::shared_ptr<RangeTrace::Pool> traces = std::make_shared<RangeTrace::Pool>();
     TapeBuilder builder;
     std::vector<TapeBuilder::Use> uses;

@@ -113,6 +113,32 @@ TEST(Shorten, TracesOfOneWorkspaceStandBesideEachOther) {
     EXPECT_LT(shorten(many, first, 2, shared).size(), 20u);
 }
 
+TEST(Shorten, FewRegionsGiveTheTapesThatManyGive) {
+    Draws draws{11};
+    for (int repeat = 0; repeat < 200; ++repeat) {
+        Graph graph;
+        const NodeRef root =
+            repeat % 4 == 0 ? spheres(graph, 0, 16) : randomExpression(graph, 5 + draws.below(80), draws);
+        const Tape tape = compile(graph, {root, {}, 1, 1}, graph.constants());
+        Box3f boxes[5];
+        for (Box3f& box : boxes) {
+            const Vec3f lo{draws.real(-2, 1), draws.real(-2, 1), draws.real(-2, 1)};
+            box = {lo, lo + Vec3f{1, 1, 1} * draws.real(.1f, 1)};
+        }
+        Workspace w;
+        FloatInterval few[5], many[5];
+        const RangeTrace all = evaluateRanges(tape, {boxes, 5}, many, w);
+        for (size_t n = 1; n <= 4; ++n) {
+            const RangeTrace some = evaluateRanges(tape, {boxes, n}, few, w);
+            for (size_t i = 0; i < n; ++i) {
+                EXPECT_TRUE(sameBits(few[i].lo, many[i].lo) && sameBits(few[i].hi, many[i].hi));
+                ASSERT_EQ(fingerprint(shorten(tape, some, i, w)), fingerprint(shorten(tape, all, i, w)))
+                    << n << ' ' << i;
+            }
+        }
+    }
+}
+
 TEST(Shorten, APartIsDroppedForANearerOneElsewhereInTheTree) {
     Graph graph;
     const auto ball = [&](float x) {

@@ -96,6 +96,24 @@ TEST(Ground, SixteenBySixteenCellsWeldWithoutToleranceAtEachLevel) {
     }
 }
 
+TEST(Ground, OfACellIsTheSameAloneAndAmongItsNeighbours) {
+    Baked baked(hills);
+    baked.side_m = 32;  // a block: what it borrows is as wide as itself
+    const auto inside = [](const Cell& c) { return c.level < 2 && c.x >= -2 && c.x < 2 && c.z >= -2 && c.z < 2; };
+    const Scratch together, apart;
+    baked.runCells(together.path(), inside);
+    size_t cells = 0;
+    for (const Cell& cell : std::vector(baked.plan.cells)) {
+        if (!inside(cell)) continue;
+        baked.runCells(apart.path(), [&](const Cell& c) { return c == cell; });
+        EXPECT_EQ(contentOf(tiles::contentFile(together.path(), cell)),
+                  contentOf(tiles::contentFile(apart.path(), cell)))
+            << cell.name();
+        ++cells;
+    }
+    EXPECT_EQ(cells, 32u);
+}
+
 /// Heights of the upper surface along a line x = const, by z.
 std::map<double, double> profileOf(const std::vector<tiles::SurfacePiece>& pieces, Vec3d centre, double x_m) {
     std::map<double, double> heights;
