@@ -1,7 +1,9 @@
 #include "modeler/mesh/tip_fan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <unordered_map>
 #include <unordered_set>
@@ -70,7 +72,7 @@ public:
     /// What is cut off at so many times the depth of the highest vertex; see `fanAt`. Nothing where the field on the
     /// fan isn't near 0, and unless `takesConfined`, where the border goes through a confined vertex.
     std::optional<TipFan> fan(double cut, bool takesConfined) {
-        top_ = vertex_, apex_ = guess_;
+        top_ = vertex_, apex_ = guess_, lacksConfined_ = false;
         cutOff_ = {top_};
         triangles_.assign(around(top_).begin(), around(top_).end());
         axis_ = axisOf();
@@ -91,6 +93,9 @@ public:
         if (!(made.error_m < nearSurface * surface_.cell_m) || crosses(surface_, made, beside(made))) return {};
         return made;
     }
+
+    /// Whether the last fan wasn't made for a confined vertex alone: else taking those changes nothing.
+    bool lacksConfined() const { return lacksConfined_; }
 
 private:
     Vec3d at(uint32_t vertex) const { return surface_.positions[vertex].as<double>(); }
@@ -181,7 +186,7 @@ private:
     }
 
     /// The triangles that go and those of the fan; false where one of these has a confined vertex that isn't taken.
-    bool fillFrom(TipFan& made, bool takesConfined) const {
+    bool fillFrom(TipFan& made, bool takesConfined) {
         made.removed = triangles_;
         for (const uint32_t number : triangles_) {
             const TipTriangle& t = surface_.triangles[number];
@@ -190,7 +195,10 @@ private:
             while (!cutOff_.contains(t.corners[static_cast<int>(k)])) ++k;
             const size_t b = (k + 1) % 3, c = (k + 2) % 3;
             for (const size_t corner : {b, c})
-                if (!takesConfined && surface_.isConfined[t.corners[static_cast<int>(corner)]]) return false;
+                if (!takesConfined && surface_.isConfined[t.corners[static_cast<int>(corner)]]) {
+                    lacksConfined_ = true;
+                    return false;
+                }
             TipTriangle fan = t;
             fan.corners[static_cast<int>(k)] = made.top;
             fan.normals[k] = normalized(t.normals[b] + t.normals[c]);
@@ -255,6 +263,7 @@ private:
     const Axis axisKind_;
     uint32_t top_ = 0;
     Vec3d apex_, axis_;
+    bool lacksConfined_ = false;
     std::unordered_set<uint32_t> cutOff_;  ///< vertices
     std::vector<uint32_t> triangles_;      ///< with such vertices, ascending
 };
@@ -284,9 +293,13 @@ std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d ap
         if (axis == Axis::MeanNormal && !surface.isConfined[vertex])
             break;  // only a confined vertex may lie far to one side
         FanBuilder builder(surface, vertex, apex, axis);
+        std::array<bool, std::size(cuts)> isOpen;
+        isOpen.fill(true);
         for (const bool takesConfined : {false, true})
-            for (const double cut : cuts) {
-                auto fan = builder.fan(cut, takesConfined);
+            for (size_t i = 0; i < isOpen.size(); ++i) {
+                if (!isOpen[i]) continue;
+                auto fan = builder.fan(cuts[i], takesConfined);
+                isOpen[i] = builder.lacksConfined();
                 if (!fan) continue;
                 if (fan->error_m < onSurface * surface.cell_m) return fan;
                 if (!first) first = std::move(fan);
