@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 #include "modeler/core/atomic_file.h"
 #include "modeler/export/exporter.h"
@@ -49,6 +50,17 @@ private:
     double& sum_;
     const Stopwatch watch_;
 };
+
+/// Orders cells so that those of all levels in one coarsest cell come together: what is known of their ground is then
+/// found once.
+void inSquares(std::vector<Cell>& cells, int levels) {
+    const auto placeOf = [&](const Cell& cell) {
+        Cell coarsest = cell;
+        while (coarsest.level < levels - 1) coarsest = coarsest.parent();
+        return std::tuple(coarsest.morton(), -cell.level, cell.morton());
+    };
+    std::sort(cells.begin(), cells.end(), [&](const Cell& a, const Cell& b) { return placeOf(a) < placeOf(b); });
+}
 
 }  // namespace
 
@@ -215,6 +227,7 @@ Status Bake::runCells(const std::vector<size_t>& cells, Context& context, const 
             tick(context.progress);
         else
             open.push_back(plan_.cells[i]);
+    inSquares(open, request_.levels);
     std::map<Cell, std::vector<tiles::SurfacePiece>> ground;
     while (!open.empty()) {
         const std::vector<Cell> group = BakedGround::groupOf(open);

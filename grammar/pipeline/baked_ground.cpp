@@ -116,6 +116,13 @@ eval::Tape within(const eval::Tape& tape, const Box3f& box, eval::Workspace& wor
 
 }  // namespace
 
+// Tapes hold a little beyond the ring below, which is a block wide.
+BakedGround::BakedGround(const Model& model, const GroundRequest& request)
+    : model_(model),
+      request_(request),
+      tapes_(model.tape, model.lowered->field.bounds, request.side_m,
+             {1.125 * request.cell_m * mesh::blockCells, request.levels - 1}) {}
+
 std::vector<Cell> BakedGround::groupOf(const std::vector<Cell>& cells) {
     std::vector<Cell> group;
     for (const Cell& cell : cells)
@@ -190,11 +197,7 @@ Result<std::vector<mesh::Block>> BakedGround::findBlocks(const std::vector<Cell>
     return blocks;
 }
 
-const eval::Tape& BakedGround::tapeOf(const Cell& cell) {
-    // The ring below is a block wide, and vertices are looked at a little beyond it.
-    const double block = pitch_m(cell.level) * mesh::blockCells;
-    return tapes_.over(cell, block * 1.125, workspace_);
-}
+const eval::Tape& BakedGround::tapeOf(const Cell& cell) { return tapes_.over(cell, workspace_); }
 
 Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const std::vector<Cell>& group,
                                                                            Context& context) {

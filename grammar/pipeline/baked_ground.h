@@ -32,8 +32,7 @@ struct BlockColumns {
 
 class BakedGround {
 public:
-    BakedGround(const Model& model, const GroundRequest& request)
-        : model_(model), request_(request), tapes_(model.tape, model.lowered->field.bounds, request.side_m) {}
+    BakedGround(const Model& model, const GroundRequest& request);
 
     /// Error::Usage where the grid has more cells than can be counted and its cells are no power of two.
     Status check() const;

@@ -24,9 +24,10 @@ eval::Tape shortenedOnce(const eval::Tape& tape, const Box3f& box) {
 }  // namespace
 
 Box3f SquareTapes::boxOf(const Cell& square) const {
-    const double reach = square.side_m(finest_m_) / 2 + margin_m_;
+    const double margin = margins_.finest_m * (1 << std::min(square.level, margins_.doublings));
+    const double reach = square.side_m(finest_m_) / 2 + margin;
     const Vec3d centre = square.centre(finest_m_);
-    const auto lift = static_cast<float>(margin_m_);
+    const auto lift = static_cast<float>(margin);
     return {{static_cast<float>(centre.x - reach), bounds_.lo.y - lift, static_cast<float>(centre.z - reach)},
             {static_cast<float>(centre.x + reach), bounds_.hi.y + lift, static_cast<float>(centre.z + reach)}};
 }
@@ -46,9 +47,7 @@ eval::Tape SquareTapes::quarterOf(Step& around, const Cell& quarter, eval::Works
                          workspace);
 }
 
-const eval::Tape& SquareTapes::over(const Cell& square, double margin_m, eval::Workspace& workspace) {
-    if (margin_m != margin_m_) path_.clear();
-    margin_m_ = margin_m;
+const eval::Tape& SquareTapes::over(const Cell& square, eval::Workspace& workspace) {
     const double extent = static_cast<double>(std::max(bounds_.hi.x - bounds_.lo.x, bounds_.hi.z - bounds_.lo.z));
     std::vector<Cell> way{square};
     while (way.back().side_m(finest_m_) < extent / 2) way.push_back(way.back().parent());

@@ -14,15 +14,20 @@ namespace sgm::pipeline {
 
 class SquareTapes {
 public:
+    /// How far around a square its tape holds: for one of level 0, doubled from level to level so many times.
+    struct Margins {
+        double finest_m;
+        int doublings;
+    };
     /// The tape of the whole model, which has to stay, and the box it is asked in; `finest_m` is the side of cells of
     /// level 0.
-    SquareTapes(const eval::Tape& whole, const Box3f& bounds, double finest_m)
-        : whole_(whole), bounds_(bounds), finest_m_(finest_m) {}
+    SquareTapes(const eval::Tape& whole, const Box3f& bounds, double finest_m, const Margins& margins)
+        : whole_(whole), bounds_(bounds), finest_m_(finest_m), margins_(margins) {}
 
-    /// The tape for a square and so much around it, also above and below the box: the values, owners and labels there
-    /// are those of the whole one. Valid until the next call. Squares of one side and margin, in Morton order, cost
-    /// little more than the tapes that they get.
-    const eval::Tape& over(const tiles::Cell& square, double margin_m, eval::Workspace& workspace);
+    /// The tape for a square and its margin around it, also above and below the box: the values, owners and labels
+    /// there are those of the whole one. Valid until the next call. Squares that follow others in the same larger one
+    /// cost little more than the tapes that they get.
+    const eval::Tape& over(const tiles::Cell& square, eval::Workspace& workspace);
 
 private:
     struct Step {
@@ -36,7 +41,7 @@ private:
     const eval::Tape& whole_;
     const Box3f bounds_;
     const double finest_m_;
-    double margin_m_ = 0;     ///< of the path
+    const Margins margins_;
     std::vector<Step> path_;  ///< from the coarsest square down to the last one asked for
 };
 
