@@ -44,6 +44,7 @@ std::string textFor(const CityCase& what) {
     const std::string maps = fmt::format("({0:.0f}m, {0:.0f}m)", mapSide_m * what.side_m / townSide_m);
     replaceAll(text, "(5km, 5km)", maps);
     replaceAll(text, "in 400m..5km", "in 400m..60km");
+    replaceAll(text, "step = 80m", "step = 80m limit = 1000000");
     replaceAll(text, "4.5km", fmt::format("{:.0f}m", what.side_m));
     if (what.isDistinct)
         for (size_t at = text.find(" variety "); at != std::string::npos; at = text.find(" variety ", at))
@@ -116,8 +117,8 @@ std::vector<CityCase> cityCases(double mostBuildings) {
     std::vector<CityCase> cases{{"10³, variety", sideFor(1e3), false, .3, 1, 0},
                                 {"10⁴, variety", townSide_m, false, .3, 1, 60, true},
                                 {"10⁴, all distinct", townSide_m, true, .2, .1, 450},
-                                {"10⁵, variety", sideFor(1e5), false, .3, .1, 150},
-                                {"10⁶, variety", sideFor(1e6), false, .3, .01, 1500}};
+                                {"10⁵, variety", sideFor(1e5), false, .3, 1, 150},
+                                {"10⁶, variety", sideFor(1e6), false, .3, .01, 1500, false, 4}};
     std::erase_if(cases, [&](const CityCase& c) {
         return townBuildings * c.side_m * c.side_m / (townSide_m * townSide_m) > 1.1 * mostBuildings;
     });
@@ -144,17 +145,19 @@ Result<CityCosts> measureCity(const CityCase& what) {
     pipeline::BakeRequest request;
     request.folder = folder.path();
     request.objectCell_m = what.objectCell_m;
+    request.cell_m = what.groundCell_m;
     request.budget.shapes = choice.shapeBudget;
     auto bake = pipeline::Bake::begin(*model, request, context);
     if (!bake.ok()) return bake.error();
     costs.plan_s = processorSeconds() - start;
     costs.planMemory_MB = static_cast<double>(planMemory.bytes()) / 1e6;
+    const PeakMemory bakeMemory;
     costs.places = bake->plan().places, costs.objects = bake->plan().objects, costs.cells = bake->plan().cells.size();
     const std::vector<size_t> cells = drawn(bake->plan().cells, what.share);
     const Status done = bake->runCells(cells, context);
     if (!done.ok()) return done.error();
     costs.baked_s = processorSeconds() - start - costs.plan_s;
-    costs.bakeMemory_MB = static_cast<double>(planMemory.bytes()) / 1e6 - costs.planMemory_MB;
+    costs.bakeMemory_MB = static_cast<double>(bakeMemory.bytes()) / 1e6;
     costs.bakedCells = cells.size();
     readLibrary(folder.path(), costs);
     if (what.isShared) {

@@ -17,9 +17,10 @@ struct CityCase {
     double side_m = 4500;
     bool isDistinct = false;  ///< every building is an object of its own as far as chance decides something of it
     double objectCell_m = .3;
-    double share = 1;       ///< of the cells, drawn by their places
-    double bar_s = 0;       ///< of processor time; 0: none
-    bool isShared = false;  ///< baked once more by two processes at a time
+    double share = 1;         ///< of the cells, drawn by their places
+    double bar_s = 0;         ///< of processor time; 0: none
+    bool isShared = false;    ///< baked once more by two processes at a time
+    double groundCell_m = 2;  ///< at 23 km float32 tells no vertices apart in cells of less than 3 m
 };
 
 struct CityCosts {
@@ -28,7 +29,7 @@ struct CityCosts {
     double plan_s = 0, baked_s = 0;                ///< processor time, measured
     double total_s = 0;                            ///< plan and all cells; projected where only a share was baked
     double objects_s = 0, ground_s = 0;            ///< of it, of objects and of the ground of cells
-    double planMemory_MB = 0, bakeMemory_MB = 0;   ///< the second beyond the first
+    double planMemory_MB = 0, bakeMemory_MB = 0;   ///< at most; the second beyond what the plan holds once it is made
     double folder_MB = 0, largestDwelling_kB = 0;  ///< the first projected as the time
     double twoWorkers_s = 0;  ///< processor time of the slower of two, with its plan; 0: not measured
 };
