@@ -136,6 +136,19 @@ bool entered() {
            (ImGui::IsKeyPressed(GLFW_KEY_ENTER, false) || ImGui::IsKeyPressed(GLFW_KEY_KP_ENTER, false));
 }
 
+bool fieldWithButton(Report& report, const FieldWithButton& row, std::string& text,
+                     const std::function<bool()>& possible) {
+    const float width = ImGui::GetContentRegionAvail().x - buttonWidth(row.label) - ImGui::GetStyle().ItemSpacing.x;
+    if (row.isCode) ImGui::PushFont(codeFont());
+    field(report, row.field, text, row.empty, width);
+    if (row.isCode) ImGui::PopFont();
+    const bool done = entered();
+    hint(row.fieldHint);
+    ImGui::SameLine();
+    const bool isPossible = !possible || possible();
+    return button(report, row.button, row.label, row.buttonHint, isPossible) || (done && isPossible);
+}
+
 void heading(const char* text) {
     ImGui::Dummy(ImVec2(0, 2));
     ImGui::PushFont(strongFont());

@@ -34,6 +34,20 @@ float buttonWidth(const char* label);
 bool field(Report& report, const std::string& name, std::string& text, const char* hint = nullptr, float width = 0);
 /// Enter was pressed in the field just made: it presses the button that belongs to the field.
 bool entered();
+/// A line of text, and the button behind it that takes what stands in it.
+struct FieldWithButton {
+    std::string field;                 ///< the field's name in the report
+    const char* empty = nullptr;       ///< what stands in it while it is empty
+    const char* fieldHint = nullptr;   ///< what explains the field
+    std::string button;                ///< the button's name in the report
+    const char* label = "";            ///< the button's
+    const char* buttonHint = nullptr;  ///< what explains the button
+    bool isCode = false;               ///< the field takes a piece of a grammar
+};
+/// Both, as wide as the panel. True when the button was pressed, or Enter in the field, while `possible`, which is
+/// asked behind the field.
+bool fieldWithButton(Report& report, const FieldWithButton& row, std::string& text,
+                     const std::function<bool()>& possible = {});
 /// A heading within a panel.
 void heading(const char* text);
 /// The text, its end replaced by "…" where it is wider than `width` pixels.

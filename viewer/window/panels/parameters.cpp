@@ -68,14 +68,18 @@ void ParametersPanel::show(Workbench& bench) {
 }
 
 void ParametersPanel::newParameter(Workbench& bench) {
-    const float width = buttonWidth("Add");
-    ImGui::PushFont(codeFont());
-    field(bench.report, "param.new", newParameter_, "name = value in least..most",
-          ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
-    ImGui::PopFont();
-    hint("A parameter as it is written: 'name = value in least..most', 'name = brick of brick, stone', 'name = true'");
-    ImGui::SameLine();
-    if (button(bench.report, "param.add", "Add", "Add the parameter to the text"))
+    const FieldWithButton row{
+        .field = "param.new",
+        .empty = "name = value in least..most",
+        .fieldHint =
+            "A parameter as it is written: 'name = value in least..most', 'name = brick of brick, stone', 'name = "
+            "true'",
+        .button = "param.add",
+        .label = "Add",
+        .buttonHint = "Add the parameter to the text",
+        .isCode = true,
+    };
+    if (fieldWithButton(bench.report, row, newParameter_))
         bench.edit(document::edits::addParameter(*bench.document.ast(), newParameter_), "Add a parameter");
 }
 
@@ -275,15 +279,12 @@ void ParametersPanel::row(Workbench& bench, document::ParamRow row) {
 void ParametersPanel::styles(Workbench& bench) {
     if (rows_.empty()) return faint("The grammar has no parameters.");
     heading("Keep these values");
-    const float button = buttonWidth("Save style");
-    field(bench.report, "style.name", styleName_, "Name of a style",
-          ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x);
-    const bool done = entered() && !styleName_.empty();
-    ImGui::SameLine();
-    if (!widgets::button(bench.report, "style.save", "Save style", "Write a `style` with all values into the text",
-                         !styleName_.empty()) &&
-        !done)
-        return;
+    const FieldWithButton row{.field = "style.name",
+                              .empty = "Name of a style",
+                              .button = "style.save",
+                              .label = "Save style",
+                              .buttonHint = "Write a `style` with all values into the text"};
+    if (!fieldWithButton(bench.report, row, styleName_, [&] { return !styleName_.empty(); })) return;
     std::vector<document::edits::NamedValue> values;
     for (const document::ParamRow& r : rows_) values.push_back({r.name, valueText(r)});
     const rules::Grammar& grammar = *bench.shown()->grammar;

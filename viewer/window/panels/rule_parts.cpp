@@ -264,14 +264,16 @@ void RulesPanel::blockInspector(Workbench& bench, const std::vector<Case>& parts
 void RulesPanel::addPart(Workbench& bench, const Case& after, const syntax::Attribute* attribute) {
     const std::string sample = document::edits::samplePart(attribute);
     if (samplePart_ != sample) newPart_ = samplePart_ = sample;
-    const float width = buttonWidth("Add part");
-    ImGui::PushFont(codeFont());
-    field(bench.report, "part.new", newPart_, "size: body",
-          ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
-    ImGui::PopFont();
-    hint("A part as it is written: 'size: body', or '{ size: body }*' for as often as it fits");
-    ImGui::SameLine();
-    if (button(bench.report, "part.add", "Add part", "Behind the selected part, or the last one"))
+    const FieldWithButton row{
+        .field = "part.new",
+        .empty = "size: body",
+        .fieldHint = "A part as it is written: 'size: body', or '{ size: body }*' for as often as it fits",
+        .button = "part.add",
+        .label = "Add part",
+        .buttonHint = "Behind the selected part, or the last one",
+        .isCode = true,
+    };
+    if (fieldWithButton(bench.report, row, newPart_))
         bench.edit(document::edits::addPart(*listed_, after, newPart_), "Add a part");
 }
 

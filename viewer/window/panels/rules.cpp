@@ -139,15 +139,14 @@ size_t RulesPanel::selectedRow(Workbench& bench) {
 }
 
 void RulesPanel::newRule(Workbench& bench, size_t selected) {
-    const float width = buttonWidth("Add rule");
-    field(bench.report, "rule.new", newRule_, "Name -> body, or start Name -> body",
-          ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
-    const bool hasBody = newRule_.find("->") != std::string::npos, done = entered() && hasBody;
-    ImGui::SameLine();
-    if (button(bench.report, "rule.add", "Add rule",
-               "A new rule, behind the selected one or the last of its shape; 'start Name -> body' adds a start",
-               hasBody) ||
-        done) {
+    const FieldWithButton row{
+        .field = "rule.new",
+        .empty = "Name -> body, or start Name -> body",
+        .button = "rule.add",
+        .label = "Add rule",
+        .buttonHint = "A new rule, behind the selected one or the last of its shape; 'start Name -> body' adds a start",
+    };
+    if (fieldWithButton(bench.report, row, newRule_, [&] { return newRule_.find("->") != std::string::npos; })) {
         const syntax::RuleDecl* after = selected < rows_.size() ? rows_[selected].rule : nullptr;
         bench.edit(document::edits::addDeclaration(*listed_, newRule_, after), "Add " + newRule_);
     }

@@ -100,12 +100,12 @@ void StepPanel::save(Workbench& bench, const document::StepView& view) {
     faint(shortened(whole, ImGui::GetContentRegionAvail().x));
     if (way) ImGui::PopFont();
     hint(whole.size() <= longestHint ? whole.c_str() : (whole.substr(0, longestHint) + "…").c_str());
-    const float width = buttonWidth("Save way");
-    field(bench.report, "step.name", way_, "Name of the way",
-          ImGui::GetContentRegionAvail().x - width - ImGui::GetStyle().ItemSpacing.x);
-    const bool possible = way.ok() && !bench.steps.running(), done = entered() && possible;
-    ImGui::SameLine();
-    if (button(bench.report, "step.save", "Save way", "Write it into the text as a `derive` line", possible) || done)
+    const FieldWithButton row{.field = "step.name",
+                              .empty = "Name of the way",
+                              .button = "step.save",
+                              .label = "Save way",
+                              .buttonHint = "Write it into the text as a `derive` line"};
+    if (fieldWithButton(bench.report, row, way_, [&] { return way.ok() && !bench.steps.running(); }))
         bench.steps.save(bench.document.ast(), way_);
 }
 
