@@ -45,7 +45,13 @@ private:
     Status applyAll(std::string_view steps);
     Status applyOne(std::string_view step);
     Status applyNumber(size_t number);
-    Status applied(const Status& done, size_t shapesBefore);
+    /// What stood before a step.
+    struct Before {
+        size_t shapes = 0;
+        std::vector<uint64_t> closed;  ///< Derivation::closed, their counts
+    };
+    Before now() const;
+    Status applied(const Status& done, const Before& before);
     Result<std::string> wayLine(const std::string& name) const;
     Status save(const std::string& name);
     void list();
@@ -73,7 +79,8 @@ void Dialogue::list() {
         fmt::print("{}  {}, {:.4g} x {:.4g} x {:.4g} m\n", tree.path(s), grammar_->symbols[tree.shapes[s].symbol].name,
                    size.x, size.y, size.z);
         const auto rules = session_.rulesFor(s);
-        if (rules.empty()) fmt::print("      no rule matches\n");
+        const std::string closed = derive::closedBy(session_.underWay(), session_.blockedAt(s));
+        if (rules.empty()) fmt::print("      no rule matches{}\n", closed.empty() ? closed : ": " + closed);
         for (const uint32_t r : rules) {
             listed_.push_back({r, s});
             const syntax::SourceSpan span = grammar_->rules[r].span;
@@ -84,11 +91,24 @@ void Dialogue::list() {
     if (live.empty()) fmt::print("nothing is live: every shape is finished\n");
 }
 
-/// Says what a step made, and what may follow.
-Status Dialogue::applied(const Status& done, size_t shapesBefore) {
+Dialogue::Before Dialogue::now() const {
+    Before before{session_.tree().shapes.size(), {}};
+    for (const derive::Closed& c : session_.underWay().closed) before.closed.push_back(c.count);
+    return before;
+}
+
+/// Says what a step made, where a closed joint kept something from growing, and what may follow.
+Status Dialogue::applied(const Status& done, const Before& before) {
     if (!done.ok()) return done;
-    const size_t made = session_.tree().shapes.size() - shapesBefore;
+    const size_t made = session_.tree().shapes.size() - before.shapes;
     fmt::print("{} new shape{}\n", made, made == 1 ? "" : "s");
+    const auto& closed = session_.underWay().closed;
+    for (size_t i = 0; i < closed.size(); ++i) {
+        if (i < before.closed.size() && closed[i].count == before.closed[i]) continue;
+        const std::string closer = derive::closedBy(session_.underWay(), closed[i]);
+        fmt::print("{}nothing grew here: {}\n", syntax::placeText(closed[i].span),
+                   closer.empty() ? "its joint is closed" : closer);
+    }
     list();
     return Done{};
 }
@@ -98,7 +118,7 @@ Status Dialogue::applyNumber(size_t number) {
         return refusal(listed_.empty()
                            ? "no rule matches a live shape"
                            : fmt::format("there is no number {} in the list: it has 1 to {}", number, listed_.size()));
-    const size_t before = session_.tree().shapes.size();
+    const Before before = now();
     Watch watch(false);
     return applied(session_.apply(listed_[number - 1], watch.progress()), before);
 }
@@ -117,7 +137,7 @@ Status Dialogue::applyOne(std::string_view step) {
         if (known.back() != name) continue;
         const auto shape = session_.meant(r, place);
         if (!shape.ok()) return shape.error();
-        const size_t before = session_.tree().shapes.size();
+        const Before before = now();
         Watch watch(false);
         return applied(session_.apply({r, *shape}, watch.progress()), before);
     }
@@ -189,7 +209,7 @@ Status Dialogue::execute(const std::string& line) {
         return list(), Done{};
     }
     if (word == "rest") {
-        const size_t before = session_.tree().shapes.size();
+        const Before before = now();
         Watch watch(false);
         return applied(session_.applyRest(watch.progress()), before);
     }

@@ -211,6 +211,7 @@ std::vector<uint32_t> sweepShapes(Derivation& derivation) {
         t.shapes.record(newId[s]) = shape;
     }
     t.shapes.truncate(kept);
+    for (Closed& closed : derivation.closed) closed.host = renamed(closed.host);
     for (LettersRead& read : derivation.letters) read.valuesAt = renamed(read.valuesAt);
     return newId;
 }

@@ -34,8 +34,10 @@ struct Step {
 
 /// An element that found its joint closed, so that nothing grew there.
 struct Closed {
-    syntax::SourceSpan span;  ///< the element
-    uint64_t count = 0;       ///< how often
+    syntax::SourceSpan span;       ///< the element
+    uint64_t count = 0;            ///< how often
+    ShapeId host = none;           ///< the shape on which it would have grown the first time; none where it is gone
+    std::vector<uint32_t> joints;  ///< those of `host` that it asked for: a name, or the choice of `free(…)`
 };
 
 /// Something that was derived and is hardly meant, as a division by zero; told once a place.
@@ -117,6 +119,13 @@ struct Placement {
 };
 /// Where objects stand, in tree order.
 std::vector<Placement> placementsOf(const Derivation& derivation);
+
+/// Which shapes closed the joints, "'+x' of 'A' is closed by 'A/cube', made by rule 'B' (a.sgm:3)"; joints that a
+/// centre alone met, of which `free(…)` takes none, are "bonded to" it. The first three of many joints; "" where the
+/// shape is gone. Makes the tree's bonds where nobody has asked for them yet.
+std::string closedBy(const Derivation& derivation, const Closed& closed);
+/// The same of several elements, each text once, with ", " between them.
+std::string closedBy(const Derivation& derivation, const std::vector<Closed>& closed);
 
 /// A warning for every element that a closed joint kept from growing wherever it came.
 syntax::Diagnostics ungrown(const Derivation& derivation);

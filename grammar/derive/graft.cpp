@@ -126,9 +126,10 @@ private:
         for (const Closed& closed : object_.closed) {
             const auto known = std::find_if(into_.closed.begin(), into_.closed.end(),
                                             [&](const Closed& c) { return isAt(c, closed.span); });
-            if (known == into_.closed.end())
+            if (known == into_.closed.end()) {
                 into_.closed.push_back(closed);
-            else
+                into_.closed.back().host = shifted(closed.host, first_.shape);
+            } else
                 known->count += closed.count;
         }
         for (const Warning& warning : object_.warnings)

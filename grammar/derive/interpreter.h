@@ -21,10 +21,16 @@ public:
     void apply(uint32_t rule, ShapeId shape, uint32_t generation);
     /// Guard apart: symbol, `beside`, chain, and a joint left for what the body grows.
     bool matches(uint32_t rule, ShapeId shape);
-    /// Notes the joints of a rule's body that are closed, all of them (Derivation::closed).
-    void noteClosed(uint32_t rule);
-    /// Rules that `matches` refused for their joints since the last call.
-    std::vector<uint32_t> takeBlocked() { return std::exchange(blocked_, {}); }
+    /// An element whose joints are all closed on a shape.
+    struct Blocked {
+        const rules::Element* element = nullptr;
+        ShapeId host = none;
+        std::vector<uint32_t> joints;  ///< of the host
+    };
+    /// Notes that it grew nowhere (Derivation::closed).
+    void noteClosed(const Blocked& blocked) { maker_.noteClosed(*blocked.element, blocked.host, blocked.joints); }
+    /// The elements of rules that `matches` refused for their joints since the last call.
+    std::vector<Blocked> takeBlocked() { return std::exchange(blocked_, {}); }
     /// Where expressions about a shape stand, drawing from its own stream.
     Place placeOf(ShapeId shape) const;
     /// True when a joint, a count or a neighbour decides whether the rule matches: it may match later.
@@ -91,7 +97,7 @@ private:
     void remember(const rules::Element& e, const Frame& frame, ShapeId id, uint32_t ours);
 
     // rules.cpp
-    bool canGrow(const rules::Body& body, ShapeId host, const Place& place);
+    bool canGrow(const rules::Body& body, ShapeId host, const Place& place, std::vector<Blocked>& blocked);
     void runChain(uint32_t rule, ShapeId root, uint32_t generation);
     void runFinally(uint32_t rule, ShapeId root, RunState& state, uint32_t generation);
     bool runLogged(const rules::Body& body, const Frame& frame, Step step);
@@ -103,7 +109,7 @@ private:
     ShapeMaker maker_;
     std::vector<rules::Value> locals_;
     std::vector<uint64_t> series_;  ///< by local that counts: the stream of its repetition
-    std::vector<uint32_t> blocked_;
+    std::vector<Blocked> blocked_;
     uint32_t chainRule_ = none;  ///< the rule whose chain is being run
 };
 

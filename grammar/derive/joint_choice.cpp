@@ -29,7 +29,8 @@ uint32_t jointNamed(TreeBuilder& builder, const rules::Expr& expr, ShapeId host,
 
 }  // namespace
 
-std::vector<uint32_t> openJoints(TreeBuilder& builder, const rules::JointChoice& at, ShapeId host, const Place& place) {
+std::vector<uint32_t> openJoints(TreeBuilder& builder, const rules::JointChoice& at, ShapeId host, const Place& place,
+                                 std::vector<uint32_t>& closed) {
     std::vector<uint32_t> joints;
     const ShapeTree& tree = builder.tree();
     for (const rules::Expr& e : at.joints)
@@ -42,7 +43,9 @@ std::vector<uint32_t> openJoints(TreeBuilder& builder, const rules::JointChoice&
     const auto taken = [&](uint32_t j) {
         return at.free ? builder.bonds().isBonded(host, j) : builder.bonds().isClosed(host, j);
     };
-    joints.erase(std::remove_if(joints.begin(), joints.end(), taken), joints.end());
+    const auto open = std::stable_partition(joints.begin(), joints.end(), [&](uint32_t j) { return !taken(j); });
+    if (open == joints.begin()) closed = joints;
+    joints.erase(open, joints.end());
     if (recording && !recording->answer(asked, joints)) builder.monitor().diverge();
     return joints;
 }

@@ -10,7 +10,9 @@
 namespace sgm::derive {
 
 /// The host's joints that `at` may take: a named one unless a directed bond closed it; of `free(…)` those nobody met.
-std::vector<uint32_t> openJoints(TreeBuilder& builder, const rules::JointChoice& at, ShapeId host, const Place& place);
+/// Where none is open, `closed` has those that it asked for.
+std::vector<uint32_t> openJoints(TreeBuilder& builder, const rules::JointChoice& at, ShapeId host, const Place& place,
+                                 std::vector<uint32_t>& closed);
 /// The newcomer's joint that meets `ours`; `jointSet` holds its named ones. none after a failure.
 uint32_t theirJoint(TreeBuilder& builder, const rules::Element& e, uint32_t jointSet, const Joint& ours,
                     const Mat3& axes, const Place& place);

@@ -237,10 +237,11 @@ bool Interpreter::placeOn(ShapeId host, const Element& e, Frame& frame, const Ta
     place.host = host;
 
     if (e.at) {
-        const auto open = openJoints(builder_, *e.at, host, place);
+        std::vector<uint32_t> closed;
+        const auto open = openJoints(builder_, *e.at, host, place, closed);
         if (builder_.monitor().failed()) return false;
         if (open.empty()) {  // nothing grows where a bond has closed the joint
-            if (!builder_.isReplaying()) maker_.noteClosed(e);
+            if (!builder_.isReplaying()) maker_.noteClosed(e, host, closed);
             return true;
         }
         if (open.size() > 1) builder_.monitor().noteChance();

@@ -91,8 +91,10 @@ void printSteps(const Derivation& d, std::back_insert_iterator<std::string> out)
 /// Where a grammar asked for a joint that a bond had closed.
 void printClosed(const Derivation& d, std::back_insert_iterator<std::string> out) {
     for (const Closed& c : d.closed) {
-        fmt::format_to(out, "{}its joint was closed {}, so nothing grew there\n", syntax::placeText(c.span),
-                       c.count == 1 ? "once" : fmt::format("{} times", c.count));
+        const std::string closer = closedBy(d, c);
+        fmt::format_to(out, "{}its joint was closed {}, so nothing grew there{}\n", syntax::placeText(c.span),
+                       c.count == 1 ? "once" : fmt::format("{} times", c.count),
+                       closer.empty() ? "" : fmt::format("{} {}", c.count == 1 ? ":" : ": first", closer));
     }
 }
 
@@ -179,7 +181,11 @@ std::string toJson(const Derivation& d) {
              {"shift_m", vectorOf(b.shift)},
              {"directed", b.directed}});
     for (const Closed& c : d.closed)
-        root["closed"].push_back({{"file", c.span.source->name()}, {"line", lineOf(c.span)}, {"times", c.count}});
+        root["closed"].push_back({{"file", c.span.source->name()},
+                                  {"line", lineOf(c.span)},
+                                  {"times", c.count},
+                                  {"shape", c.host == none ? json() : json(c.host)},
+                                  {"by", closedBy(d, c)}});
     for (const Step& s : d.steps)
         root["steps"].push_back({{"rule", d.grammar->rules[s.rule].name},
                                  {"shape", s.shape == none ? json() : json(s.shape)},

@@ -82,7 +82,7 @@ std::vector<Rewriter::Decision> Rewriter::decide(std::vector<ShapeId>& waiting) 
         const uint32_t rule = choose(s);
         const bool returns = rule == none && mayMatchLater(s);
         if (rule == none && !returns)
-            for (const uint32_t blocked : interpreter_.takeBlocked()) interpreter_.noteClosed(blocked);
+            for (const auto& blocked : interpreter_.takeBlocked()) interpreter_.noteClosed(blocked);
         if (Recording* r = builder_.recording()) r->now().rule = rule;
         if (rule != none)
             decisions.push_back({shape.key, {rule, s}});
@@ -204,6 +204,15 @@ bool Rewriter::usable(Application a) {
     builder_.monitor().at(a.rule, a.shape, none);
     return builder_.tree().shapes[a.shape].live && interpreter_.matches(a.rule, a.shape) &&
            (!rule.when || holds(*rule.when, interpreter_.placeOf(a.shape)));
+}
+
+std::vector<Closed> Rewriter::blockedAt(ShapeId shape) {
+    interpreter_.takeBlocked();
+    for (const uint32_t rule : grammar_.symbols[builder_.tree().shapes[shape].symbol].rules) usable({rule, shape});
+    std::vector<Closed> found;
+    for (auto& blocked : interpreter_.takeBlocked())
+        found.push_back({blocked.element->span, 1, blocked.host, std::move(blocked.joints)});
+    return found;
 }
 
 std::vector<ShapeId> Rewriter::usableBy(uint32_t rule, size_t most) {

@@ -34,6 +34,8 @@ public:
 
     /// May the rule rewrite the shape as things stand: alive, matched, guard and all?
     bool usable(Application application);
+    /// What keeps the shape's rules from matching: elements whose joints are all closed.
+    std::vector<Closed> blockedAt(ShapeId shape);
     /// The shapes that the rule may rewrite, in tree order, at most so many.
     std::vector<ShapeId> usableBy(uint32_t rule, size_t most = SIZE_MAX);
     /// The live shape that "RULE at PLACE" means. Without a place it must be the only one that the rule may rewrite.

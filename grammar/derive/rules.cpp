@@ -131,18 +131,18 @@ void Interpreter::count(uint32_t local, double turn, uint64_t stream) {
 }
 
 /// False when every joint is closed on which the body's own elements (not those in loops) would grow.
-bool Interpreter::canGrow(const rules::Body& body, ShapeId host, const Place& place) {
+/// Those elements, and the joints that they asked for, go to `blocked`.
+bool Interpreter::canGrow(const rules::Body& body, ShapeId host, const Place& place, std::vector<Blocked>& blocked) {
     if (!body.grows) return true;
-    bool asked = false;
     for (const Elements& sibling : body.siblings)
         for (const Element& e : sibling) {
             if (e.kind == Element::Kind::Let) return true;  // a joint may hang on its value
             if (e.kind != Element::Kind::Shape || e.op == rules::Operator::None) continue;
             if (!e.at || e.on || e.at->each) return true;
-            if (!openJoints(builder_, *e.at, host, place).empty()) return true;
-            asked = true;
+            blocked.push_back({&e, host, {}});
+            if (!openJoints(builder_, *e.at, host, place, blocked.back().joints).empty()) return true;
         }
-    return !asked;
+    return blocked.empty();
 }
 
 bool Interpreter::matches(uint32_t index, ShapeId id) {
@@ -151,15 +151,10 @@ bool Interpreter::matches(uint32_t index, ShapeId id) {
     if (s.symbol != rule.symbol || (rule.repeat && s.chainRule == index)) return false;
     if (rule.beside != rules::none && !isBeside(builder_, id, rule.beside)) return false;
     if (locals_.size() < rule.locals) locals_.resize(rule.locals);
-    if (canGrow(rule.body, id, placeOf(id))) return true;
-    if (!builder_.isReplaying()) blocked_.push_back(index);
+    std::vector<Blocked> blocked;
+    if (canGrow(rule.body, id, placeOf(id), blocked)) return true;
+    if (!builder_.isReplaying()) blocked_.insert(blocked_.end(), blocked.begin(), blocked.end());
     return false;
-}
-
-void Interpreter::noteClosed(uint32_t rule) {
-    for (const Elements& sibling : grammar_.rules[rule].body.siblings)
-        for (const Element& e : sibling)
-            if (e.kind == Element::Kind::Shape && e.op != rules::Operator::None) maker_.noteClosed(e);
 }
 
 bool Interpreter::runLogged(const rules::Body& body, const Frame& frame, Step step) {
@@ -205,7 +200,7 @@ void Interpreter::runChain(uint32_t index, ShapeId root, uint32_t generation) {
                     false};
         frame.place.ramp = steps > 1 ? (i - 1) / (steps - 1) : 0;
         if (rule.stepLocal != none) count(rule.stepLocal, i, key);
-        if (!canGrow(rule.body, host, frame.place)) {
+        if (std::vector<Blocked> blocked; !canGrow(rule.body, host, frame.place, blocked)) {
             if (i > 1 && host == root) warnOfStop(builder_, rule, i - 1, steps);
             break;
         }

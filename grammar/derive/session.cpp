@@ -59,6 +59,8 @@ Result<std::shared_ptr<Session::State>> Session::replayed(std::span<const Applic
 
 const ShapeTree& Session::tree() const { return state_->derivation.tree; }
 
+const Derivation& Session::underWay() const { return state_->derivation; }
+
 std::vector<ShapeId> Session::live() const { return state_->rewriter.live(); }
 
 std::vector<uint32_t> Session::rulesFor(ShapeId shape) {
@@ -67,6 +69,12 @@ std::vector<uint32_t> Session::rulesFor(ShapeId shape) {
         if (state_->rewriter.usable({rule, shape})) found.push_back(rule);
         state_->builder.monitor().discardFailure();
     }
+    return found;
+}
+
+std::vector<Closed> Session::blockedAt(ShapeId shape) {
+    std::vector<Closed> found = state_->rewriter.blockedAt(shape);
+    state_->builder.monitor().discardFailure();
     return found;
 }
 

@@ -20,10 +20,14 @@ public:
     const rules::Grammar& grammar() const { return *grammar_; }
     /// The tree as it stands; ids hold until the next undo or redo.
     const ShapeTree& tree() const;
+    /// The derivation as it stands, without the passes that end one; as `tree`.
+    const Derivation& underWay() const;
     /// Live shapes in tree order: what rules may rewrite.
     std::vector<ShapeId> live() const;
     /// The rules that may rewrite the shape now, in file order.
     std::vector<uint32_t> rulesFor(ShapeId shape);
+    /// The elements of its rules whose joints are all closed there, so that their rules don't match.
+    std::vector<Closed> blockedAt(ShapeId shape);
     /// The shape that "RULE at PLACE" means; an empty place means the only one that the rule may rewrite.
     Result<ShapeId> meant(uint32_t rule, const std::string& place);
 

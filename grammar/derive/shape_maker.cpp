@@ -78,12 +78,12 @@ void spanBetween(AttributeContext& context) {
 
 }  // namespace
 
-void ShapeMaker::noteClosed(const Element& e) {
+void ShapeMaker::noteClosed(const Element& e, ShapeId host, const std::vector<uint32_t>& joints) {
     ElementCache& facts = factsOf(e);
     auto& closed = builder_.derivation().closed;
     if (facts.closed == none) {
         facts.closed = static_cast<uint32_t>(closed.size());
-        closed.push_back({e.span, 0});
+        closed.push_back({e.span, 0, host, joints});
     }
     ++closed[facts.closed].count;
 }

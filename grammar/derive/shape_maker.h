@@ -30,8 +30,8 @@ public:
     explicit ShapeMaker(TreeBuilder& builder) : builder_(builder), grammar_(*builder.derivation().grammar) {}
 
     ElementCache& factsOf(const rules::Element& e);
-    /// Notes that the element found its joint closed (Derivation::closed).
-    void noteClosed(const rules::Element& e);
+    /// Notes that the element found these joints of `host` closed (Derivation::closed).
+    void noteClosed(const rules::Element& e, ShapeId host, const std::vector<uint32_t>& joints);
     /// The index of a label in the tree.
     uint32_t labelIndex(std::string_view text);
     /// What the element's attributes say of a newcomer at `place`; false after a failure.

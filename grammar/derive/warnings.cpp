@@ -57,6 +57,14 @@ std::set<std::pair<const syntax::Source*, uint32_t>> laterNewcomers(const rules:
     return places;
 }
 
+/// Why an element grew nowhere: the shapes that closed its joints where it came first.
+std::string whyNowhere(const Derivation& derivation, const Closed& closed, bool asksFree) {
+    const std::string closer = closedBy(derivation, closed);
+    if (asksFree)
+        return "none of these joints is free any more, so this grows nowhere" + (closer.empty() ? "" : ": " + closer);
+    return (closer.empty() ? "another shape has closed its joint" : closer) + ", so this grows nowhere";
+}
+
 }  // namespace
 
 syntax::Diagnostics ungrown(const Derivation& derivation) {
@@ -71,9 +79,7 @@ syntax::Diagnostics ungrown(const Derivation& derivation) {
         const auto& shapes = derivation.tree.shapes;
         const bool asksFree = closed.span.text().find("at free") != std::string_view::npos;
         if (std::none_of(shapes.begin(), shapes.end(), isOf))
-            warnings.warning(closed.span,
-                             asksFree ? "none of these joints is free any more, so this grows nowhere"
-                                      : "another shape has closed its joint, so this grows nowhere",
+            warnings.warning(closed.span, whyNowhere(derivation, closed, asksFree),
                              asksFree ? "name more joints in 'free(…)', or place it by 'move'"
                              : later.contains({closed.span.source, closed.span.begin})
                                  ? "write 'on last' to let it grow on the shape before it, choose another "

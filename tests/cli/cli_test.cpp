@@ -250,16 +250,18 @@ TEST_F(Cli, WhatAClosedJointKeepsFromGrowingIsTold) {
     const Outcome run =
         sgm("build --resolution 16 " + grammar("start A -> cube : B\nrule B -> + cube size .5 at +x + sphere at +x\n"));
     EXPECT_EQ(run.code, 0);
-    EXPECT_NE(run.out.find("test.sgm:3:32: warning: another shape has closed its joint"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find("test.sgm:3:32: warning: '+x' of 'A/B' is closed by 'A/B/cube', made by rule"),
+              std::string::npos)
+        << run.out;
     // A chain that finds its end there, and what grew elsewhere, are no mistakes.
     const Outcome chain =
         sgm("build --resolution 16 " +
             grammar("start A -> cube : B\nrule B repeat 9 -> + cube at +x to -y + cube size .2 at -x : B\n"));
-    EXPECT_EQ(chain.out.find("closed its joint"), std::string::npos) << chain.out;
+    EXPECT_EQ(chain.out.find("is closed by"), std::string::npos) << chain.out;
     for (const auto& entry : fs::recursive_directory_iterator("examples")) {
         if (entry.path().extension() != ".sgm") continue;
         const Outcome shipped = sgm("tree " + entry.path().string());
-        EXPECT_EQ(shipped.out.find("closed its joint"), std::string::npos) << shipped.out;
+        EXPECT_EQ(shipped.out.find("is closed by"), std::string::npos) << shipped.out;
     }
 }
 

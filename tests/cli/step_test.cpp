@@ -41,5 +41,21 @@ TEST_F(Cli, StepStopsAtTheFirstMistakeInAPipe) {
     EXPECT_EQ(sgm("step examples/figure1.sgm </dev/null").code, 0);
 }
 
+TEST_F(Cli, StepSaysWhichShapeClosedAJoint) {
+    const std::string file = path("closed.sgm");
+    std::ofstream(file) << "grammar 2\nstart A -> cube size 2 : B\n"
+                           "rule Up: B -> + cube size 1 at +x + sphere size 3 at +x + cube size 1 at +y : K\n"
+                           "rule K -> + sphere size 1 at -y\n";
+    const Outcome run = stepped("Up\n", file);
+    EXPECT_EQ(run.code, 0) << run.out;
+    EXPECT_NE(run.out.find("closed.sgm:3:35: nothing grew here: '+x' of 'A/B' is closed by 'A/B/cube', made by rule "
+                           "'Up' ("),
+              std::string::npos)
+        << run.out;
+    EXPECT_NE(run.out.find("no rule matches: '-y' of 'A/B/K' is closed by 'A/B', made by the start ("),
+              std::string::npos)
+        << run.out;
+}
+
 }  // namespace
 }  // namespace sgm::cli

@@ -150,9 +150,13 @@ TEST(Bonds, AClosedJointIsCountedWhereNothingGrew) {
     EXPECT_EQ(d.closed[0].count, 1u);
     EXPECT_EQ(d.closed[0].span.text(), "+ cube at +x");
     EXPECT_EQ(d.closed[1].count, 3u);
-    EXPECT_NE(derive::toText(d, true).find("test.sgm:3:24: its joint was closed once, so nothing grew there"),
+    const std::string text = derive::toText(d, true);
+    EXPECT_NE(text.find("test.sgm:3:24: its joint was closed once, so nothing grew there: '+x' of 'S/A' is closed by "
+                        "'S/A/cube', made by rule 'A#1' (test.sgm:3)\n"),
               std::string::npos)
-        << derive::toText(d, true);
+        << text;
+    EXPECT_NE(text.find("closed 3 times, so nothing grew there: first '+x' of 'S/A'"), std::string::npos) << text;
+    EXPECT_NE(derive::toJson(d).find("\"by\": \"'+x' of 'S/A' is closed by"), std::string::npos);
 }
 
 TEST(OnEach, GrowsOnEveryShapeOfTheName) {

@@ -144,11 +144,13 @@ TEST(Selections, AChainWhoseStepsReplaceEachOtherIsTold) {
 
 TEST(Selections, ABodyWhoseJointsAreAllClosedIsTold) {
     EXPECT_EQ(told("start A -> cube size 2 : H\nrule H -> + cube size 1 at +y : K\nrule K -> + sphere size 1 at -y\n"),
-              "4:11 another shape has closed its joint, so this grows nowhere; choose another joint of ours, 'at "
-              "free(…)', or place it by 'move'\n");
-    EXPECT_EQ(told("start A -> cube size 3 + cube size 2 at +y + cube size 1 at +y\n"),
-              "2:44 another shape has closed its joint, so this grows nowhere; write 'on last' to let it grow on the "
-              "shape before it, choose another joint of ours, 'at free(…)', or place it by 'move'\n");
+              "4:11 '-y' of 'A/H/K' is closed by 'A/H', made by the start (test.sgm:2), so this grows nowhere; choose "
+              "another joint of ours, 'at free(…)', or place it by 'move'\n");
+    EXPECT_EQ(
+        told("start A -> cube size 3 + cube size 2 at +y + cube size 1 at +y\n"),
+        "2:44 '+y' of 'A/cube' is closed by 'A/cube/cube', made by the start (test.sgm:2), so this grows nowhere; "
+        "write 'on last' to let it grow on the shape before it, choose another joint of ours, 'at free(…)', or "
+        "place it by 'move'\n");
     const auto d = derived(
         "grammar 2\nstart A -> cube size 2 : H\nrule H -> + cube size 1 at +y : K + cube size 1 at +x : K\n"
         "rule K -> + sphere size 1 at -y\n");

@@ -52,9 +52,18 @@ TEST(Warnings, RootsRepeatsAndColours) {
 
 TEST(Warnings, WhatAClosedJointKeepsFromGrowingIsAmongThem) {
     EXPECT_EQ(told("start A -> cube size 2 : B\nrule B -> + cube size (2,1,1) at +x + sphere size 3 at +x\n"),
-              "3:37 another shape has closed its joint, so this grows nowhere\n");
+              "3:37 '+x' of 'A/B' is closed by 'A/B/cube', made by rule 'B#1' (test.sgm:3), so this grows nowhere\n");
     EXPECT_EQ(told("start A -> cube size 2 + cube size 1 at free(-y) + sphere size 1 at free(-y)\n"),
-              "2:50 none of these joints is free any more, so this grows nowhere\n");
+              "2:50 none of these joints is free any more, so this grows nowhere: '-y' of 'A/cube' is closed by "
+              "'A/cube/cube', made by the start (test.sgm:2)\n");
+    EXPECT_EQ(told("start A -> cube size 2 : B, cube size 2 move (2, 0, 0)\nrule B -> + sphere size 3 at +x\n"),
+              "3:11 '+x' of 'A/B' is closed by 'A/cube', made by the start (test.sgm:2), so this grows nowhere\n")
+        << "faces that coincide";
+    EXPECT_EQ(told("start A -> cube size 2 : B\nrule B -> cube size 2 : C + cube size 1 at -z : D\n"
+                   "rule C -> cube size 2 + sphere size 9 at -z + sphere size 3 at +z\n"),
+              "4:23 '-z' of 'A/B/group/C/cube' is closed by 'A/B/group/D', made by rule 'B#1' (test.sgm:3), so this "
+              "grows nowhere\n")
+        << "the shape that stood in the place before";
 }
 
 TEST(Warnings, CopiesThatAskForOneJointAreTold) {

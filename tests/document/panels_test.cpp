@@ -127,6 +127,8 @@ TEST(ShapeRows, JointsAndBondsAsInFigure11) {
     EXPECT_FALSE(bonds[0].toCentre);
     EXPECT_TRUE(bonds[1].toCentre);
     EXPECT_EQ(bondMarks(tree, 1).size(), 1u);
+    EXPECT_EQ(closedJoints(model->model.derivation, cube),
+              "'+x' of 'A/cube' is closed by 'A/cube/cube', made by the start (untitled.sgm:2)");
     EXPECT_TRUE(isTerminal(model->model.derivation, cube));
 }
 

@@ -119,7 +119,7 @@ TEST_F(Sessions, WhatAClosedJointKeepsFromGrowingIsTold) {
     EXPECT_EQ(session.problems()[0].severity, syntax::Severity::Warning);
     EXPECT_EQ(session.problems()[0].line, 3u);
     EXPECT_EQ(session.problems()[0].column, 32u);
-    EXPECT_NE(session.problems()[0].message.find("closed its joint"), std::string::npos);
+    EXPECT_NE(session.problems()[0].message.find("is closed by"), std::string::npos);
 }
 
 TEST_F(Sessions, ABrokenTextKeepsTheLastModel) {

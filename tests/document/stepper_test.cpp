@@ -60,6 +60,18 @@ TEST_F(Steps, GoForwardAndBack) {
     EXPECT_EQ(*stepper.view()->way("w"), "derive w: R0 => R2 => R4\n");
 }
 
+TEST_F(Steps, SayWhichShapeClosedAJoint) {
+    document = Document(
+        "grammar 2\nstart A -> cube size 2 : B\nrule B -> + cube size 1 at +y : K\n"
+        "rule K -> + sphere size 1 at -y\n");
+    Stepper stepper = begun();
+    EXPECT_EQ(rowsOf(stepper)[0].closed, "");
+    ASSERT_TRUE(stepper.applyRest().ok());
+    ASSERT_EQ(rowsOf(stepper).size(), 1u);
+    EXPECT_TRUE(rowsOf(stepper)[0].rules.empty());
+    EXPECT_EQ(rowsOf(stepper)[0].closed, "'-y' of 'A/B/K' is closed by 'A/B', made by the start (untitled.sgm:2)");
+}
+
 TEST_F(Steps, AreShownAndSaved) {
     Stepper stepper = begun();
     EXPECT_FALSE(stepper.save(*document.ast(), "mine").ok()) << "nothing was done";

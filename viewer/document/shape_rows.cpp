@@ -92,6 +92,19 @@ ShapeLabel labelOf(const derive::Derivation& derivation, ShapeId shape) {
     return label;
 }
 
+std::string closedJoints(const derive::Derivation& derivation, ShapeId shape) {
+    constexpr size_t most = 8;
+    const derive::Bonds& bonds = derivation.tree.bonds();
+    std::string lines;
+    for (uint32_t j = 0, told = 0; j < derivation.tree.jointCount(shape) && told < most; ++j) {
+        if (!bonds.closed(shape, j)) continue;
+        const std::string line = derive::closedBy(derivation, derive::Closed{{}, 1, shape, {j}});
+        if (line.empty()) continue;
+        lines += (told++ > 0 ? "\n" : "") + line;
+    }
+    return lines;
+}
+
 std::vector<JointMark> jointMarks(const ShapeTree& tree, ShapeId shape) {
     std::vector<JointMark> marks;
     const derive::Bonds& bonds = tree.bonds();

@@ -44,6 +44,9 @@ ShapeLabel labelOf(const derive::Derivation& derivation, derive::ShapeId shape);
 /// True for V_T: a terminal symbol or a plain solid.
 bool isTerminal(const derive::Derivation& derivation, derive::ShapeId shape);
 
+/// Which shapes closed the joints of a shape, a line each as derive::closedBy says it; the first eight. O(joints).
+std::string closedJoints(const derive::Derivation& derivation, derive::ShapeId shape);
+
 /// A joint as figure 11 draws it.
 struct JointMark {
     derive::ShapeId shape = 0;

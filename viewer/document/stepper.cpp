@@ -50,7 +50,8 @@ Result<StepView> Stepper::view(Progress* progress) {
                     view.tree.path(s),
                     grammar_->symbols[view.tree.shapes[s].symbol].name,
                     view.tree.shapes[s].scope.size,
-                    {}};
+                    {},
+                    derive::closedBy(session_.underWay(), session_.blockedAt(s))};
         for (const uint32_t r : session_.rulesFor(s))
             row.rules.push_back({r, grammar_->rules[r].name, grammar_->rules[r].span});
         view.rows.push_back(std::move(row));

@@ -25,6 +25,7 @@ struct StepRow {
     std::string path, symbol;
     Vec3d size_m;
     std::vector<StepRule> rules;  ///< none: nothing matches any more
+    std::string closed;           ///< which shapes closed joints that its rules ask for, as derive::closedBy says it
 };
 
 /// A derivation by hand after a step, as the panel shows it. Immutable; spans point into sources of `grammar`.

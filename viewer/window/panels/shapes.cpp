@@ -77,6 +77,9 @@ void ShapesPanel::row(Workbench& bench, const document::ShapeRow& row) {
         seen_ = bench.selected();
     }
     bench.report.mark("shape." + derivation.tree.path(row.shape, true));
+    if (ImGui::IsItemHovered() && !ImGui::IsMouseDown(ImGuiMouseButton_Left))
+        if (const std::string closed = document::closedJoints(derivation, row.shape); !closed.empty())
+            tooltip(closed.c_str());
     if (ImGui::BeginDragDropSource()) {
         ImGui::SetDragDropPayload("shape", &row.shape, sizeof row.shape);
         ImGui::TextUnformatted(fmt::format("{}: drop it on a joint", label.name).c_str());

@@ -71,7 +71,9 @@ void StepPanel::shapes(Workbench& bench, const document::StepView& view) {
             if (ImGui::Selectable(row.path.c_str(), selected)) bench.selectLive(seen_ = row.shape);
             ImGui::PopStyleColor();
             bench.report.mark("live." + row.path);
-            hint(fmt::format("{:.2f} x {:.2f} x {:.2f} m", row.size_m.x, row.size_m.y, row.size_m.z).c_str());
+            hint(fmt::format("{:.2f} x {:.2f} x {:.2f} m{}{}", row.size_m.x, row.size_m.y, row.size_m.z,
+                             row.closed.empty() ? "" : "\n", row.closed)
+                     .c_str());
             if (selected && row.shape != seen_) {
                 ImGui::SetScrollHereY();
                 seen_ = row.shape;
