@@ -56,8 +56,11 @@ std::vector<Case> readBlock(Cursor& cursor, std::string_view word, std::string_v
                                               : "";
     if (!cursor.expect("{", "after " + after, hint)) return cases;
     if (cursor.at("}")) cursor.fail("the block is empty", "write " + quoted(plain(sample) + ": …") + " in it");
-    do cases.push_back(readCase(cursor, sample));
-    while (acceptBar(cursor));
+    const size_t first = cursor.position();
+    do {
+        cases.push_back(readCase(cursor, sample));
+        cursor.resume(first, Cursor::Next::Part);
+    } while (acceptBar(cursor));
     cursor.close(open);
     return cases;
 }
@@ -346,9 +349,10 @@ std::string nearestWord(const OperationTable& operations, std::string_view word)
     return near.empty() ? near : "did you mean " + quoted(near) + "?";
 }
 
-Body readBody(Cursor& cursor) {
-    const uint32_t begin = cursor.peek().begin;
-    Body body;
+namespace {
+
+/// chain {, chain}
+void readSiblings(Cursor& cursor, Body& body) {
     constexpr std::string_view faceWords[] = {"rest", "top",   "bottom", "side",   "front", "back",
                                               "left", "right", "court",  "shared", "inner", "outer"};
     const auto atFaceWord = [&] {
@@ -360,8 +364,21 @@ Body readBody(Cursor& cursor) {
             cursor.fail("this part stands behind ','", "the parts of a block are set apart by '|'");
         body.siblings.push_back(readChain(cursor));
     } while (cursor.accept(","));
-    body.span = cursor.since(begin);
-    refuseStray(cursor);
+}
+
+}  // namespace
+
+Body readBody(Cursor& cursor) {
+    const uint32_t begin = cursor.peek().begin;
+    const size_t first = cursor.position();
+    Body body;
+    bool goesOn = true;
+    while (goesOn) {
+        readSiblings(cursor, body);
+        body.span = cursor.since(begin);
+        refuseStray(cursor);
+        goesOn = cursor.resume(first, Cursor::Next::Sibling) && (cursor.accept(",") || atOperator(cursor));
+    }
     return body;
 }
 

@@ -94,6 +94,11 @@ void Cursor::fail(std::string message, std::string hint) {
 
 void Cursor::failAt(SourceSpan span, std::string message, std::string hint) {
     complain(span, std::move(message), std::move(hint));
+    giveUp();
+}
+
+void Cursor::giveUp() {
+    if (!failed_) failedAt_ = at_;
     failed_ = true;
     at_ = tokens_.size();
 }
@@ -107,8 +112,9 @@ void Cursor::warn(SourceSpan span, std::string message, std::string hint) {
 }
 
 Cursor::Nest::Nest(Cursor& cursor) : cursor_(cursor) {
-    if (++cursor_.depth_ > deepest)
-        cursor_.fail("nested more than " + std::to_string(deepest) + " deep", "give a part its own rule or name");
+    if (++cursor_.depth_ <= deepest) return;
+    cursor_.fail("nested more than " + std::to_string(deepest) + " deep", "give a part its own rule or name");
+    cursor_.isTooDeep_ = true;
 }
 
 }  // namespace sgm::syntax

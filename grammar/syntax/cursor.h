@@ -1,7 +1,7 @@
 // A walk over the tokens of one declaration.
-// Enters: a slice of tokens without blanks and comments. Leaves: tokens one at a time, and diagnostics. After the first
+// Enters: a slice of tokens without blanks and comments. Leaves: tokens one at a time, and diagnostics. After a
 // failure the slice counts as used up, so nothing more is said about it and every loop ends; nodes made then are empty
-// but well formed.
+// but well formed. Who reads parts that are independent of each other may go on with the next one (`resume`).
 #pragma once
 
 #include <span>
@@ -54,7 +54,7 @@ public:
         Cursor inner(source_, tokens, operations_, diagnostics_);
         read(inner);
         if (!inner.failed() && !inner.done()) inner.fail("expected nothing more here, found " + inner.found());
-        failed_ = failed_ || inner.failed();
+        if (inner.failed()) giveUp();
     }
 
     /// Reports the token at the cursor and gives up the slice.
@@ -64,6 +64,20 @@ public:
     void complain(SourceSpan span, std::string message, std::string hint = {});
     /// Warns and goes on.
     void warn(SourceSpan span, std::string message, std::string hint = {});
+
+    /// The index of the next token.
+    size_t position() const { return at_; }
+    /// What reading may go on with after a failure.
+    enum class Next {
+        Part,     ///< of a block: the next bar, or what closes the block
+        Sibling,  ///< of a body: the next ',' at an end of its line or operator that begins one, 'finally', or its end
+        Body,     ///< the arrow before it
+        Declaration  ///< a line that begins one, indented or misspelt
+    };
+    /// After a failure: goes on there, where it is behind the failure and not within brackets that were opened from
+    /// token `from` on. False, and nothing changes, where there is no such place, where curly braces aren't paired so
+    /// that places can't be told, and where enough problems were reported.
+    bool resume(size_t from, Next next);
 
     /// Holds one level of nesting; gives up the slice when there are too many: the stack must not end first.
     class Nest {
@@ -79,15 +93,20 @@ public:
 
 private:
     std::vector<Token> tokensOf(SourceSpan range) const;
+    void giveUp();
+    bool beginsLine(size_t index) const;
+    bool stopsAt(size_t index, Next next) const;
 
     const Source& source_;
     std::span<Token> tokens_;
     const OperationTable& operations_;
     Diagnostics& diagnostics_;
     size_t at_ = 0;
+    size_t failedAt_ = 0;  ///< the index of the token at which reading failed
     uint32_t lastEnd_ = 0;
     int depth_ = 0;
     bool failed_ = false;
+    bool isTooDeep_ = false;
 };
 
 /// `text` in quotes for a message, cut where it is long.

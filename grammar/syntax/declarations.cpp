@@ -206,6 +206,7 @@ void readStart(Cursor& cursor, Ast& ast) {
     if (cursor.at("when") || cursor.at("weight"))
         cursor.fail("a start has no " + cursor.found(),
                     "let the start put a symbol, and give its rules a 'when' or a 'weight'");
+    cursor.resume(0, Cursor::Next::Body);
     expectArrow(cursor, "after the start's symbol");
     start.body = readBody(cursor);
     start.span = cursor.since(begin);
@@ -257,6 +258,7 @@ void readRule(Cursor& cursor, Ast& ast) {
             "expected '->' after what the rule matches, found " + cursor.found(),
             near.empty() ? "write '-> " + std::string(cursor.peekText()) + "'" : "did you mean '" + near + "'?");
     }
+    cursor.resume(0, Cursor::Next::Body);
     expectArrow(cursor, "after what the rule matches");
     rule.body = readBody(cursor);
     if (cursor.accept("finally")) rule.finally_ = readBody(cursor);

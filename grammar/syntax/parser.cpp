@@ -52,15 +52,17 @@ void readDeclarations(Cursor& cursor, Ast& ast) {
                             "a declaration ends with its line: leave ';' out");
             continue;
         }
+        const size_t begin = cursor.position();
         const Declaration* declaration = declarationAt(cursor);
         if (!declaration) {
             refuse(cursor);
-            return;
+        } else {
+            if (!first || !cursor.peek().columnOne)
+                cursor.complain(cursor.span(cursor.peek()), cursor.found() + " begins a declaration",
+                                "begin a line with it, no blanks before");
+            declaration->read(cursor, ast);
         }
-        if (!first || !cursor.peek().columnOne)
-            cursor.complain(cursor.span(cursor.peek()), cursor.found() + " begins a declaration",
-                            "begin a line with it, no blanks before");
-        declaration->read(cursor, ast);
+        cursor.resume(begin + 1, Cursor::Next::Declaration);
     }
 }
 

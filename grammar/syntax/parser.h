@@ -1,6 +1,7 @@
 // Text to syntax tree, by recursive descent. The grammar of the language stands below, whole.
 // Enters: a Source. Leaves: an Ast of everything that could be read, and diagnostics for the rest. Never throws;
-// recovery restarts at a keyword in column one, so one run shows all problems and a slip is reported once.
+// recovery restarts at the next part of a block or body (Cursor::Next), else at a keyword in column one, so one run
+// shows all problems and a slip is reported once.
 //
 // clang-format off
 //   file        = "grammar" ( "1" | "2" ) { declaration } .              a declaration's word stands in column one

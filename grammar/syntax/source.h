@@ -56,6 +56,7 @@ public:
     void error(SourceSpan span, std::string message, std::string hint = {});
     void warning(SourceSpan span, std::string message, std::string hint = {});
     bool hasErrors() const { return errors_ > 0; }
+    size_t errorCount() const { return errors_; }
     const std::vector<Diagnostic>& all() const { return list_; }
     /// Keeps a source alive as long as the problems that point into it.
     void keep(SourcePtr source) { sources_.push_back(std::move(source)); }
