@@ -147,6 +147,40 @@ TEST(Documents, SaveAndOpen) {
     EXPECT_FALSE(Document().save().ok());
 }
 
+TEST(Documents, BeginAFileThatNobodyHasWritten) {
+    const Scratch scratch;
+    const auto path = scratch / "new.sgm";
+    Document document = *Document::open(path, true);
+    EXPECT_EQ(document.path(), path);
+    EXPECT_EQ(document.text(), newGrammar);
+    EXPECT_EQ(document.ast()->source->name(), path.string());
+    EXPECT_FALSE(document.dirty());
+    EXPECT_EQ(document.poll(), Document::Outside::Same) << "its file isn't missed";
+    EXPECT_FALSE(std::filesystem::exists(path));
+    document.type(document.text() + "\n");
+    EXPECT_TRUE(document.dirty());
+    ASSERT_TRUE(document.save().ok());
+    EXPECT_EQ(scratch.read("new.sgm"), document.text());
+    std::filesystem::remove(path);
+    EXPECT_EQ(document.poll(), Document::Outside::Gone);
+
+    Document other = *Document::open(scratch / "other.sgm", true);
+    scratch.write("other.sgm", tower);
+    EXPECT_EQ(other.poll(), Document::Outside::Reloaded) << "another program wrote it";
+    EXPECT_EQ(other.text(), tower);
+    Document edited = *Document::open(scratch / "edited.sgm", true);
+    edited.type("grammar 2\n");
+    scratch.write("edited.sgm", tower);
+    EXPECT_FALSE(edited.save().ok());
+    EXPECT_EQ(edited.poll(), Document::Outside::Conflict);
+    EXPECT_EQ(scratch.read("edited.sgm"), tower);
+
+    EXPECT_EQ(Document::open(scratch / "edited.sgm", true)->text(), tower) << "what is there is read";
+    EXPECT_FALSE(Document::open(scratch / "picture.png", true).ok());
+    EXPECT_FALSE(Document::open(scratch / "none" / "a.sgm", true).ok());
+    EXPECT_FALSE(Document::open(scratch / "c.sgm").ok());
+}
+
 TEST(Documents, TakeOverWhatAnotherProgramWrote) {
     const Scratch scratch;
     const auto path = scratch.write("a.sgm", tower);

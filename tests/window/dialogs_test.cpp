@@ -220,5 +220,45 @@ TEST_F(Dialogs, ExportAsksBeforeItReplacesAFile) {
     EXPECT_EQ(state()["question"], "");
 }
 
+TEST_F(Dialogs, ATurntableLeavesTheOneBefore) {
+    openText(ball);
+    drawn();
+    for (const char* name : {"test-turn-1", "test-turn-2"}) {
+        key("t");
+        until(
+            "a turntable", [&](const auto&) { return fs::exists(folder / name / "001.png"); }, 120);
+        key("Escape");
+        until("its end", [](const auto& s) { return s["turning"] == false; });
+    }
+    EXPECT_FALSE(fs::exists(folder / "test-turn-3"));
+}
+
+TEST_F(Dialogs, ANewNameBeginsAGrammar) {
+    file = folder / "fresh.sgm";
+    start();
+    EXPECT_EQ(text().substr(0, 9), "grammar 2");
+    EXPECT_EQ(state()["notice"], "fresh.sgm is new: Ctrl+S writes the file");
+    EXPECT_EQ(state()["dirty"], false);
+    settled();
+    shoot("fresh");
+    EXPECT_FALSE(fs::exists(file)) << "saved only when the user saves";
+    key("ctrl+s");
+    until("the file", [&](const auto&) { return fs::exists(file); });
+    EXPECT_EQ(fileText(), text());
+}
+
+TEST_F(Dialogs, AProblemOfAUsedFileOpensIt) {
+    std::ofstream(folder / "parts.sgm") << "grammar 2\nrule Wall -> cube size 2 - cube size 1 move (9, 0, 0)\n";
+    openText("grammar 2\nuse \"parts.sgm\"\nstart A -> Wall\n");
+    until("a warning", [&](const auto&) { return has("problem.0"); });
+    shoot("used");
+    click("problem.0", 0.1);
+    until("the other file", [](const auto& s) { return std::string(s["text"]).find("start") == std::string::npos; });
+    until("its text", [&](const auto&) { return has("text"); });
+    EXPECT_EQ(state()["textSelection"], "- cube size 1 move (9, 0, 0)");
+    EXPECT_EQ(state()["notice"], "parts.sgm is open, which test.sgm uses");
+    shoot("opened");
+}
+
 }  // namespace
 }  // namespace sgm::window::test

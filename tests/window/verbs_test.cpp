@@ -234,7 +234,7 @@ TEST_F(Verbs, TheView) {
     shoot("fog");
     key("t");
     until(
-        "a turntable", [&](const auto&) { return fs::exists(folder / "test-turn-001.png"); }, 120);
+        "a turntable", [&](const auto&) { return fs::exists(folder / "test-turn-1/001.png"); }, 120);
     key("Escape");
     EXPECT_EQ(state()["turning"], false);
 }
@@ -287,10 +287,10 @@ TEST_F(Verbs, APictureThatCantBeWrittenIsTriedOnce) {
     openText("grammar 1\nstart A -> sphere\n", "gone/test.sgm");
     drawn();
     fs::remove_all(gone);
-    for (const char* asked : {"p", "t"}) {
+    for (const auto& [asked, name] : {std::pair{"p", ".png"}, {"t", "turn-1"}}) {
         press(asked);
-        until("the word that a picture can't be written", [](const auto& s) {
-            return std::string(s["notice"]).find(".png") != std::string::npos && s["turning"] == false;
+        until("the word that a picture can't be written", [&, part = name](const auto& s) {
+            return std::string(s["notice"]).find(part) != std::string::npos && s["turning"] == false;
         });
         settled();
     }

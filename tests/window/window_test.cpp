@@ -329,7 +329,7 @@ TEST_F(Window, FilesAreWritten) {
     until("a mesh", [&](const auto&) { return std::filesystem::exists(folder / "test.ply"); });
     EXPECT_GT(std::filesystem::file_size(folder / "test.ply"), 1000u);
     key("t");
-    until("a turntable", [&](const auto&) { return std::filesystem::exists(folder / "test-turn-001.png"); });
+    until("a turntable", [&](const auto&) { return std::filesystem::exists(folder / "test-turn-1/001.png"); });
     key("Escape");
 }
 

@@ -12,13 +12,30 @@ namespace fs = std::filesystem;
 
 Document::Document(std::string text) : saved_(text) { setText(std::move(text)); }
 
-Result<Document> Document::open(const fs::path& path) {
-    const auto stamp = stampOf(path);
-    const auto source = pipeline::readSource(path);
-    if (!source.ok()) return source.error();
-    Document document{std::string((*source)->text())};
+/// Why no grammar may begin as `path`; "" where it may.
+static std::string whyNotBegun(const fs::path& path) {
+    std::error_code failed;
+    if (path.extension() != ".sgm") return "a new grammar's name ends with '.sgm'";
+    const fs::path folder = path.parent_path();
+    return folder.empty() || fs::is_directory(folder, failed) ? ""
+                                                              : fmt::format("there is no folder '{}'", folder.string());
+}
+
+Result<Document> Document::open(const fs::path& path, bool mayBegin) {
+    std::error_code failed;
+    const bool begins = mayBegin && fs::symlink_status(path, failed).type() == fs::file_type::not_found;
+    Document document;
+    if (begins) {
+        if (const std::string why = whyNotBegun(path); !why.empty())
+            return Error{Error::Kind::Input, fmt::format("can't open '{}': {}", path.string(), why)};
+    } else {
+        const auto stamp = stampOf(path);
+        const auto source = pipeline::readSource(path);
+        if (!source.ok()) return source.error();
+        document = Document{std::string((*source)->text())};
+        document.stamp_ = stamp;
+    }
     document.path_ = path;
-    document.stamp_ = stamp;
     document.setText(document.text_);  // its source is called like the file from now on
     return document;
 }
@@ -182,7 +199,8 @@ Status Document::saveAs(const fs::path& path) {
 Document::Outside Document::poll() {
     if (path_.empty()) return Outside::Same;
     const auto stamp = stampOf(path_);
-    if (stamp && stamp == stamp_) return Outside::Same;
+    // A new document has no stamp, and its file isn't missed.
+    if (stamp == stamp_ && (stamp || saved_)) return Outside::Same;
     const auto now = pipeline::readSource(path_);
     if (!now.ok()) {
         if (!saved_) return Outside::Same;  // said once

@@ -74,8 +74,10 @@ class Document {
 public:
     /// A new one without a file. Counts as saved until it is edited.
     explicit Document(std::string text = newGrammar);
-    /// Error::Input when the file can't be read.
-    static Result<Document> open(const std::filesystem::path& path);
+    /// Error::Input when the file can't be read. With `mayBegin` a file that isn't there begins a new grammar of that
+    /// name, which counts as saved until it is edited, and which saving writes; Error::Input then where the name
+    /// doesn't end with ".sgm" or its folder isn't there.
+    static Result<Document> open(const std::filesystem::path& path, bool mayBegin = false);
     /// A document whose unsaved text was recovered: `text` is one edit of what the file holds now, or all of a new
     /// document.
     static Document recovered(const std::filesystem::path& path, std::string text);

@@ -375,7 +375,7 @@ int runApp(const AppOptions& options) {
     if (!shared) return fail(shared.error());
     Workbench bench(report, std::move(*shared), &Window::notify);
     if (!options.file.empty())
-        if (const Status s = bench.open(options.file); !s) return fail(s.error());
+        if (const Status s = bench.open(options.file, !options.benchmark); !s) return fail(s.error());
     if (!options.benchmark) bench.offerAbandoned();
     return Loop(options, window, bench, report).run();
 }

@@ -8,21 +8,36 @@
 
 namespace sgm::window {
 
+namespace {
+
+/// The document's file without its ending.
+std::string stemOf(const Workbench& bench) {
+    const std::filesystem::path path = bench.document.path();
+    return path.empty() ? "untitled" : std::filesystem::path(path).replace_extension().string();
+}
+
+/// The first of "STEM-1ENDING", "STEM-2ENDING" … that nothing is called.
+std::string firstFree(const std::string& stem, std::string_view ending) {
+    for (int n = 1;; ++n)
+        if (std::string name = fmt::format("{}-{}{}", stem, n, ending); !std::filesystem::exists(name)) return name;
+}
+
+}  // namespace
+
 void startTurntable(Workbench& bench, int count) {
-    bench.pictures.turntable = Turntable{0, count, bench.view.orbit.yaw};
+    const std::string folder = firstFree(stemOf(bench) + "-turn", "");
+    std::error_code failed;
+    std::filesystem::create_directory(folder, failed);
+    if (failed) return bench.say(fmt::format("can't make '{}': {}", folder, failed.message()), true);
+    bench.pictures.turntable = Turntable{0, count, bench.view.orbit.yaw, folder};
 }
 
 namespace {
 
 /// Beside the document: the turntable's next, or the first name that no file has.
 std::string nextName(const Workbench& bench) {
-    const std::filesystem::path stem =
-        bench.document.path().empty() ? "untitled" : std::filesystem::path(bench.document.path()).replace_extension();
-    if (bench.pictures.turntable)
-        return fmt::format("{}-turn-{:03}.png", stem.string(), bench.pictures.turntable->next);
-    for (int n = 1;; ++n)
-        if (const std::string name = fmt::format("{}-{}.png", stem.string(), n); !std::filesystem::exists(name))
-            return name;
+    if (const auto& table = bench.pictures.turntable) return fmt::format("{}/{:03}.png", table->folder, table->next);
+    return firstFree(stemOf(bench), ".png");
 }
 
 }  // namespace

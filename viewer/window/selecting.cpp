@@ -8,8 +8,18 @@ namespace sgm::window {
 
 void revealPlace(Workbench& bench, const document::Problem& problem) {
     const syntax::Source& source = *bench.document.ast()->source;
-    if (problem.file != source.name() || !problem.line)
-        return bench.say(fmt::format("{}:{}: {}", problem.file, problem.line, problem.message), true);
+    if (!problem.line) return;
+    if (problem.file != source.name()) {
+        std::error_code failed;
+        if (!std::filesystem::is_regular_file(problem.file, failed))
+            return bench.say(fmt::format("{}:{}: {}", problem.file, problem.line, problem.message), true);
+        const std::string user = std::filesystem::path(source.name()).filename().string();
+        return bench.drop(problem.file, [&bench, problem, user] {
+            if (bench.document.ast()->source->name() != problem.file) return;
+            revealPlace(bench, problem);
+            bench.say(fmt::format("{} is open, which {} uses", bench.document.path().filename().string(), user));
+        });
+    }
     const std::string_view line = source.line(problem.line);
     const auto start = static_cast<uint32_t>(line.data() - source.text().data());
     const uint32_t begin = start + std::min<uint32_t>(problem.column - 1, static_cast<uint32_t>(line.size()));

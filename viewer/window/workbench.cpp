@@ -14,12 +14,15 @@ constexpr int fogVoxels = 96, previewCells = 64;  // along the longest side
 Workbench::Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> notify)
     : report(report), session(notify), uploader(std::move(shared), notify), steps(notify), notify_(std::move(notify)) {}
 
-Status Workbench::open(const std::filesystem::path& path) {
-    Result<document::Document> opened = document::Document::open(path);
+Status Workbench::open(const std::filesystem::path& path, bool mayBegin) {
+    std::error_code failed;
+    const bool isNew = mayBegin && !std::filesystem::exists(path, failed);
+    Result<document::Document> opened = document::Document::open(path, mayBegin);
     if (!opened) return opened.error();
     show(std::move(*opened));
     endSteps();
     refresh();
+    if (isNew) say(fmt::format("{} is new: Ctrl+S writes the file", path.filename().string()));
     return Done{};
 }
 

@@ -62,7 +62,8 @@ struct Naming {
 /// Pictures from all around, one a turn of 360° / count.
 struct Turntable {
     int next = 0, count = 36;
-    double yaw = 0;  ///< of the first, radians
+    double yaw = 0;      ///< of the first, radians
+    std::string folder;  ///< a new one, for these pictures alone
 };
 
 /// What the pointer is over in the view.
@@ -126,7 +127,8 @@ public:
     Workbench(Report& report, std::unique_ptr<SharedContext> shared, std::function<void()> notify);
 
     // --- The document ---
-    Status open(const std::filesystem::path& path);
+    /// With `mayBegin` a file that isn't there begins a new grammar of that name, and a notice says so.
+    Status open(const std::filesystem::path& path, bool mayBegin = false);
     /// Nothing but a notice where the edit was refused. What it adds or moves is selected.
     void edit(const document::edits::Edit& edit, const std::string& label);
     void undo();
@@ -136,8 +138,8 @@ public:
     /// Asks whether to go on with what a crash left behind of this document; where none is open, of any. Says so where
     /// it left something of another one.
     void offerAbandoned();
-    /// Opens another file; asks first where the present text isn't saved.
-    void drop(const std::filesystem::path& path);
+    /// Opens another file; asks first where the present text isn't saved. `then` runs once it is open.
+    void drop(const std::filesystem::path& path, const std::function<void()>& then = {});
     /// True when nothing is unsaved; else asks, and `leaving` tells later.
     bool mayClose();
     /// Takes what other programs changed, or asks. True when something has changed.

@@ -37,6 +37,7 @@ void Workbench::offerAbandoned() {
     const auto nameOf = [](const document::Abandoned& a) {
         return a.document.empty() ? "a grammar without a name" : a.document.filename().string();
     };
+    if (about == left.end() && !panels.notice.empty()) return;
     if (about == left.end())
         return say(fmt::format("Unsaved work on {} is kept; {} to go on with it", nameOf(left.front()),
                                left.front().document.empty() ? "start without a file" : "open it"));
@@ -53,9 +54,10 @@ void Workbench::offerAbandoned() {
                                 {"Later", {}}}};
 }
 
-void Workbench::drop(const std::filesystem::path& path) {
-    const auto go = [this, path] {
+void Workbench::drop(const std::filesystem::path& path, const std::function<void()>& then) {
+    const auto go = [this, path, then] {
         if (const Status s = open(path); !s) return say(s.error().message, true);
+        if (then) then();
         offerAbandoned();
     };
     if (!document.dirty()) return go();

@@ -19,7 +19,9 @@ void problemsPanel(Workbench& bench) {
         ImGui::TextUnformatted(isError ? "error" : "warning");
         ImGui::PopStyleColor();
         ImGui::SameLine();
-        const std::string place = p.line ? fmt::format("line {}: ", p.line) : std::string();
+        const bool isOwn = p.file == bench.document.ast()->source->name();
+        const std::string file = isOwn ? "" : std::filesystem::path(p.file).filename().string() + ", ";
+        const std::string place = p.line ? fmt::format("{}line {}: ", file, p.line) : std::string();
         const std::string text = place + p.message + (p.hint.empty() ? "" : "  -  " + p.hint);
         if (ImGui::Selectable(text.c_str()) && p.line) revealPlace(bench, p);
         // A row may be cut, and what to write instead stands at its end.
