@@ -71,7 +71,15 @@ TEST_F(Picking, DroppingOnAJointRetargets) {
     EXPECT_EQ(applied(pair, *edit), replaced(pair, "at +y to -y", "at +z"));
     const auto elsewhere = attach(document, *model, cone, body, 4);
     ASSERT_FALSE(elsewhere.ok());
-    EXPECT_NE(elsewhere.error().message.find("can't join it to"), std::string::npos) << elsewhere.error().message;
+    EXPECT_EQ(elsewhere.error().message,
+              "'A/Body/Arm/cone' grows on 'A/Body/Arm': its rule can't join it to 'A/Body'; write 'rule Body -> + cone "
+              "size 1 at +z' for one there, and take this one out");
+    const auto plain = attach(document, *model, arm, cone, 2);
+    ASSERT_FALSE(plain.ok());
+    EXPECT_NE(plain.error().message.find("give 'cone' a name, as by ': Name', and write 'rule Name -> + sphere size 1 "
+                                         "at +y : Arm'"),
+              std::string::npos)
+        << plain.error().message;
     EXPECT_FALSE(attach(document, *model, 0, arm, 0).ok());
 
     const auto hosts = hostsFor(document, *model, cone);

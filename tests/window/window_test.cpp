@@ -239,19 +239,24 @@ TEST_F(Window, RulesAreChangedByClicks) {
 TEST_F(Window, AShapeIsDraggedOntoAJoint) {
     openText(pair);
     // Joints show while something is dragged.
-    const auto joint = [&] {
+    const auto drop = [&](const std::string& shape, const char* joint) {
         nlohmann::json place;
-        hold("shape.Pair/Base/Ball", [&] {
-            until("the joints", [&](const auto&) {
-                return !(place = report()["widgets"].value("joint.Pair/Base.+y", nlohmann::json())).is_null();
-            });
+        hold(shape, [&] {
+            until("the joints",
+                  [&](const auto&) { return !(place = report()["widgets"].value(joint, nlohmann::json())).is_null(); });
         });
-        return place;
-    }();
-    ASSERT_TRUE(joint.is_array());
-    dragTo("shape.Pair/Base/Ball", static_cast<int>(joint[0].get<double>() + joint[2].get<double>() / 2),
-           static_cast<int>(joint[1].get<double>() + joint[3].get<double>() / 2));
+        dragTo(shape, static_cast<int>(place[0].get<double>() + place[2].get<double>() / 2),
+               static_cast<int>(place[1].get<double>() + place[3].get<double>() / 2));
+    };
+    drop("shape.Pair/Base/Ball", "joint.Pair/Base.+y");
     EXPECT_EQ(lineOf(text(), 7), "rule R0: Base -> + sphere size 1.5 at +y : Ball   // the ball");
+    // On a shape that its rule doesn't match: why not, and what to write.
+    const std::string before = text();
+    drop("shape.Pair/Base/Ball/Cap", "joint.Pair/Base.+z");
+    EXPECT_EQ(text(), before);
+    EXPECT_NE(std::string(state()["notice"]).find("write 'rule Base -> + cylinder size 1 at +z : Cap' for one there"),
+              std::string::npos)
+        << state()["notice"];
 }
 
 TEST_F(Window, ParametersLocksStylesAndKeys) {

@@ -147,6 +147,33 @@ Result<const syntax::Element*> joinedElement(const Document& document, const Bui
 
 }  // namespace
 
+namespace {
+
+/// The symbol of which a rule would have to be to join something to `host`; "" where it is a plain solid.
+std::string symbolOf(const Derivation& derivation, ShapeId host) {
+    const rules::SymbolId symbol = derivation.tree.shapes[host].symbol;
+    if (symbol == rules::none || derivation.grammar->symbols[symbol].terminal) return "";
+    return derivation.grammar->symbols[symbol].name;
+}
+
+/// What to write so that `moved` stands at a joint of a shape that its own rule doesn't match.
+std::string ruleFor(const Document& document, const BuiltModel& shown, const syntax::Element& element, ShapeId host,
+                    std::string_view joint) {
+    const Derivation& derivation = shown.model.derivation;
+    std::string symbol = symbolOf(derivation, host), text(element.span.text());
+    if (const auto edit = edits::attach(*document.ast(), element, joint); edit.ok()) {
+        const std::string whole = applied(document.text(), *edit);
+        text = whole.substr(element.span.begin, text.size() + whole.size() - document.text().size());
+    }
+    const std::string name = symbol.empty() ? "Name" : symbol;
+    const std::string rule = fmt::format("'rule {} -> {}'", name, text);
+    return symbol.empty() ? fmt::format("give '{}' a name, as by ': Name', and write {}",
+                                        derivation.tree.labels[derivation.tree.shapes[host].label], rule)
+                          : "write " + rule;
+}
+
+}  // namespace
+
 Result<std::vector<ShapeId>> hostsFor(const Document& document, const BuiltModel& shown, ShapeId moved) {
     const auto element = joinedElement(document, shown, moved);
     if (!element.ok()) return element.error();
@@ -164,8 +191,10 @@ edits::Edit attach(const Document& document, const BuiltModel& shown, ShapeId mo
     const ShapeTree& tree = shown.model.derivation.tree;
     const ShapeId stands = hostOf(tree, moved);
     if (!samePlace(tree, stands, host))
-        return edits::refused(fmt::format("'{}' grows on '{}': its rule can't join it to '{}'", tree.path(moved),
-                                          tree.path(stands), tree.path(host)));
+        return edits::refused(
+            fmt::format("'{}' grows on '{}': its rule can't join it to '{}'; {} for one there, and take this one out",
+                        tree.path(moved), tree.path(stands), tree.path(host),
+                        ruleFor(document, shown, **element, host, tree.joint(host, joint).name)));
     return edits::attach(*document.ast(), **element, tree.joint(host, joint).name);
 }
 

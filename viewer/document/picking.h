@@ -48,8 +48,8 @@ const syntax::Element* elementOf(const Document& document, const BuiltModel& sho
 /// place. Error::Input, in words, where there is none. Costs one look at every shape.
 Result<std::vector<derive::ShapeId>> hostsFor(const Document& document, const BuiltModel& shown, derive::ShapeId moved);
 /// Joins `moved` at a joint of `host`: what dropping a shape on a joint asks for. Error::Input, in words, where the
-/// grammar can't say so: the element is joined to another shape than `host`, it is the content of its shape, it stands
-/// in a used file.
+/// grammar can't say so: the element is joined to another shape than `host` (with the rule that would join it), it is
+/// the content of its shape, it stands in a used file.
 edits::Edit attach(const Document& document, const BuiltModel& shown, derive::ShapeId moved, derive::ShapeId host,
                    uint32_t joint);
 

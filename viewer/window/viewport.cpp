@@ -14,6 +14,7 @@
 #include "viewer/window/overlay.h"
 #include "viewer/window/plan_overlay.h"
 #include "viewer/window/style.h"
+#include "viewer/window/widgets.h"
 
 namespace sgm::window {
 namespace {
@@ -62,8 +63,17 @@ std::optional<Hover> hoverAt(Workbench& bench, ImVec2 low, ImVec2 mouse) {
     return pick ? hoverOf(bench, *pick) : std::nullopt;
 }
 
+/// Tells a test where joints are.
+void markJoints(Workbench& bench, const std::vector<ScreenJoint>& joints) {
+    if (!bench.report.active()) return;
+    const float r = ImGui::GetFontSize() * 0.3f;
+    for (const ScreenJoint& joint : joints)
+        bench.report.mark(fmt::format("joint.{}.{}", bench.tree()->path(joint.mark.shape, true), joint.mark.name),
+                          {joint.at.x - r, joint.at.y - r}, {joint.at.x + r, joint.at.y + r});
+}
+
 /// A shape that is dragged here from the Shapes panel is joined at the joint under the pointer. Those that it can be
-/// joined at show; where there are none, why.
+/// joined at show; where there are none, why, and at a joint of another shape what to write for it.
 void takeShape(Workbench& bench, const Projection& project, ImDrawList& list) {
     const ImGuiPayload* dragged = ImGui::GetDragDropPayload();
     if (!dragged || !dragged->IsDataType("shape") || !bench.tree()) return;
@@ -72,14 +82,21 @@ void takeShape(Workbench& bench, const Projection& project, ImDrawList& list) {
     if (!hosts.ok()) return bench.say(hosts.error().message, true);
     const std::vector<ScreenJoint> joints = screenJoints(*bench.tree(), *hosts, project);
     drawJoints(joints, list);
-    for (const ScreenJoint& joint : joints) {
-        const float r = ImGui::GetFontSize() * 0.3f;
-        bench.report.mark(fmt::format("joint.{}.{}", bench.tree()->path(joint.mark.shape, true), joint.mark.name),
-                          {joint.at.x - r, joint.at.y - r}, {joint.at.x + r, joint.at.y + r});
-    }
+    markJoints(bench, joints);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const ScreenJoint* nearest = nearestJoint(joints, mouse, ImGui::GetFontSize());
     if (nearest) list.AddCircle(nearest->at, ImGui::GetFontSize() * 0.5f, tint::selected, 0, 2.5f);
+    // A joint of a shape that another rule matches tells why it can't be had, and what to write.
+    std::vector<ScreenJoint> others;
+    if (!nearest) others = screenJoints(*bench.tree(), everyOwner(*bench.tree()), project);
+    markJoints(bench, others);
+    if (!nearest) nearest = nearestJoint(others, mouse, ImGui::GetFontSize());
+    if (nearest && !others.empty()) {
+        list.AddCircle(nearest->at, ImGui::GetFontSize() * 0.5f, tint::faint, 0, 2.5f);
+        const document::edits::Edit refused =
+            document::attach(bench.document, *bench.shown(), moved, nearest->mark.shape, nearest->mark.joint);
+        if (!refused) widgets::tooltip(refused.error().message.c_str());
+    }
     if (!ImGui::BeginDragDropTarget()) return;
     if (const ImGuiPayload* dropped = ImGui::AcceptDragDropPayload("shape", ImGuiDragDropFlags_AcceptNoDrawDefaultRect);
         dropped && nearest)
