@@ -22,8 +22,23 @@ constexpr std::pair<std::string_view, std::string_view> sides[] = {
 
 }  // namespace
 
+/// The letter of a direction that is written in a capital, '-X': a minus and a name to the parser; 0 for anything else.
+static char axisBehindMinus(const CheckContext& ctx, const Place& place, const Written& e) {
+    if (e.kind != Written::Kind::Unary || e.text != "-" || e.args[0].kind != Written::Kind::Name) return 0;
+    const std::string& name = e.args[0].text;
+    const bool isLocal =
+        std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == name; });
+    const bool isAxis = (name == "X" || name == "Y" || name == "Z") && !ctx.names.inherited.contains(name);
+    return isAxis && !isLocal ? static_cast<char>(name[0] - 'A' + 'a') : 0;
+}
+
 /// A joint by name, or a value that is a direction: a local, or one that `with` sets.
 Expr checkJoint(CheckContext& ctx, Place& place, const Written& e) {
+    if (const char axis = axisBehindMinus(ctx, place, e)) {
+        ctx.diagnostics.error(e.span, fmt::format("unknown joint '{}'", e.span.text()),
+                              fmt::format("write '-{}'", axis));
+        return makeConstant(e.span, makeWord("centre"));
+    }
     const bool local =
         std::any_of(place.locals.begin(), place.locals.end(), [&](const auto& l) { return l.name == e.text; });
     const bool inherited = ctx.names.inherited.contains(e.text) && !ctx.names.joints.contains(e.text);
@@ -33,8 +48,8 @@ Expr checkJoint(CheckContext& ctx, Place& place, const Written& e) {
         std::vector<std::string> known(ctx.names.joints.begin(), ctx.names.joints.end());
         for (const auto& l : place.locals) known.push_back(l.name);
         std::string hint = nearestHint(e.text, known);
-        if (hint.empty() && (e.text == "x" || e.text == "y" || e.text == "z"))
-            hint = fmt::format("write '+{0}' or '-{0}'", e.text);
+        if (e.text.size() == 1 && std::string_view("xyzXYZ").find(e.text) != std::string_view::npos)
+            hint = fmt::format("write '+{0}' or '-{0}'", static_cast<char>(std::tolower(e.text[0])));
         for (const auto& [side, axis] : sides)
             if (e.text == side) hint = fmt::format("joints are +x -x +y -y +z -z and centre; here '{}'", axis);
         if (hint.empty()) hint = "joints are +x -x +y -y +z -z, centre, and those that a terminal declares";

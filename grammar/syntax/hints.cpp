@@ -122,20 +122,48 @@ std::optional<Hint> decimalComma(const Cursor& cursor) {
     return Hint{span, quoted(span.text()) + " is no number", "a decimal point is '.': write " + quoted(written)};
 }
 
-/// A length in feet, inches or yards.
-std::optional<Hint> foreignUnit(const Cursor& cursor) {
+/// A number and a word for feet, inches, yards or metres.
+std::optional<Hint> foreignUnit(const Cursor& cursor, const Token& number, const Token& word) {
     struct Unit {
         std::string_view name;
         double length_m;
     };
-    constexpr Unit units[] = {{"feet", foot_m},   {"foot", foot_m}, {"ft", foot_m},   {"inch", inch_m},
-                              {"inches", inch_m}, {"yard", yard_m}, {"yards", yard_m}};
-    const Token number = cursor.previous(1);
-    const auto unit = std::ranges::find(units, cursor.peekText(), &Unit::name);
+    constexpr Unit units[] = {{"feet", foot_m},   {"foot", foot_m}, {"ft", foot_m},    {"inch", inch_m},
+                              {"inches", inch_m}, {"yard", yard_m}, {"yards", yard_m}, {"meter", 1},
+                              {"meters", 1},      {"metre", 1},     {"metres", 1}};
+    const auto unit = std::ranges::find(units, cursor.text(word), &Unit::name);
     if (unit == std::end(units)) return {};
     const double length_m = std::strtod(std::string(cursor.text(number)).c_str(), nullptr) * unit->length_m;
-    return Hint{join(cursor.span(number), cursor.span(cursor.peek())), quoted(cursor.peekText()) + " is no unit",
+    return Hint{join(cursor.span(number), cursor.span(word)), quoted(cursor.text(word)) + " is no unit",
                 "write " + quoted(fmt::format("{:.4g}m", length_m))};
+}
+
+/// What stands behind the argument of an operation and begins none: `extrude 5 feet House`, `extrude House 5`.
+std::optional<Hint> behindOperation(const Cursor& cursor, std::string_view message) {
+    const Token token = cursor.peek(), last = cursor.previous(1), first = cursor.previous(2);
+    if (!message.ends_with("can't follow a shape") || last.kind != Token::Kind::Word) return {};
+    if (first.kind == Token::Kind::Number) return foreignUnit(cursor, first, last);
+    const Operation* operation = cursor.operations().find(cursor.text(first));
+    const bool takesLength =
+        operation && !operation->arguments.empty() && operation->arguments[0].type == ArgumentType::Length;
+    const char initial = cursor.text(last)[0];
+    if (!takesLength || token.kind != Token::Kind::Number || initial < 'A' || initial > 'Z') return {};
+    const std::string name(cursor.text(first)), shape(cursor.text(last)), number(cursor.text(token));
+    return Hint{join(cursor.span(first), cursor.span(token)), quoted(name) + " says its length before the shape",
+                "write " + quoted(name + " " + number + " " + shape)};
+}
+
+/// A direction in capitals, or with a blank behind its sign, where a joint stands: `at +Y`, `at + y`.
+std::optional<Hint> misspeltAxis(const Cursor& cursor, std::string_view message) {
+    if (!cursor.at("+") && !cursor.at("-")) return {};
+    const std::string_view axis = cursor.peekText(1);
+    const bool isAxis = axis.size() == 1 && std::string_view("xyzXYZ").find(axis) != std::string_view::npos;
+    const bool isJoint = message.find(" needs a joint, found") != std::string_view::npos;
+    if (!isAxis || !(isJoint || message.starts_with("a number has no '+'"))) return {};
+    const SourceSpan span = join(cursor.span(cursor.peek()), cursor.span(cursor.peek(1)));
+    const char small = static_cast<char>(axis[0] >= 'a' ? axis[0] : axis[0] - 'A' + 'a');
+    return Hint{span, "unknown joint " + quoted(span.text()),
+                "write " + quoted(std::string(cursor.peekText()) + small)};
 }
 
 /// What stands between or behind numbers and doesn't belong there: `2,5`, `10 m`, `(20; 12; 6)`, `1 to 5`.
@@ -151,7 +179,7 @@ std::optional<Hint> besideNumber(const Cursor& cursor, std::string_view message)
         return Hint{join(cursor.span(number), cursor.span(token)), "a unit stands behind its number without a space",
                     "write " + quoted(written + std::string(text))};
     if (isPlain && token.kind == Token::Kind::Word)
-        if (auto foreign = foreignUnit(cursor)) return foreign;
+        if (auto foreign = foreignUnit(cursor, number, token)) return foreign;
     if (text == ";" && message.starts_with("expected ')'"))
         return Hint{cursor.span(token), "';' doesn't stand between numbers", "write ','"};
     if (token.kind == Token::Kind::Word && !token.glued && message.starts_with("expected ')'") &&
@@ -213,7 +241,7 @@ std::optional<Hint> ofOtherGrammars(const Cursor& cursor, std::string_view messa
                         quoted(std::string(attribute) + " (" + std::string(cursor.text(last)) + ", " +
                                std::string(cursor.text(token)) + ", " + third + ")")};
     }
-    return {};
+    return behindOperation(cursor, message);
 }
 
 Hint unknownCharacter(const Cursor& cursor) {
@@ -224,6 +252,13 @@ Hint unknownCharacter(const Cursor& cursor) {
     if (bytes == "'" && cursor.at(Token::Kind::Number, 1) && cursor.peek(1).glued) {
         const double share = std::strtod(std::string(cursor.peekText(1)).c_str(), nullptr);
         hint.hint = "a share is written in percent: write " + quoted(fmt::format("{:.6g}%", share * 100));
+    }
+    const Token last = cursor.previous(1);
+    if (bytes == "'" && last.kind == Token::Kind::Number && cursor.peek().glued) {
+        const double feet = std::strtod(std::string(cursor.text(last)).c_str(), nullptr);
+        return {join(cursor.span(last), cursor.span(cursor.peek())),
+                quoted(std::string(cursor.text(last)) + "'") + " is no length",
+                "write " + quoted(fmt::format("{:.4g}m", feet * foot_m))};
     }
     const bool beyondAscii = static_cast<unsigned char>(bytes.front()) >= 0x80;
     if (hint.hint.empty() && beyondAscii)
@@ -240,6 +275,7 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
     if (auto beside = besideNumber(cursor, message)) return beside;
     if (auto other = ofOtherGrammars(cursor, message)) return other;
     if (auto without = withoutWord(cursor, message)) return without;
+    if (auto axis = misspeltAxis(cursor, message)) return axis;
     if (text == "+" && message.starts_with("a number has no '+'") && cursor.peekText(1).size() == 1 &&
         cursor.at(Token::Kind::Word, 1))
         return Hint{cursor.span(token), "unknown joint " + quoted("+" + std::string(cursor.peekText(1))),
