@@ -242,9 +242,11 @@ TEST_F(Dialogs, ANewNameBeginsAGrammar) {
     settled();
     shoot("fresh");
     EXPECT_FALSE(fs::exists(file)) << "saved only when the user saves";
-    key("ctrl+s");
+    EXPECT_EQ(state()["new"], true);
+    click("bar.save");
     until("the file", [&](const auto&) { return fs::exists(file); });
     EXPECT_EQ(fileText(), text());
+    until("its name alone", [](const auto& s) { return s["new"] == false; });
 }
 
 TEST_F(Dialogs, AProblemOfAUsedFileOpensIt) {

@@ -179,6 +179,7 @@ void describe(const Workbench& bench, nlohmann::json& state) {
     state["drawn"] = bench.view.drawn();
     state["text"] = bench.document.text();
     state["dirty"] = bench.document.dirty();
+    state["new"] = bench.panels.fileIsNew;
     state["undo"] = bench.document.history().undoLabel();
     state["redo"] = bench.document.history().redoLabel();
     state["notice"] = bench.panels.notice;

@@ -63,14 +63,16 @@ void Bars::top(Workbench& bench) {
     const document::Document& document = bench.document;
     ImGui::AlignTextToFramePadding();
     ImGui::PushFont(strongFont());
-    ImGui::TextUnformatted(document.path().empty() ? "untitled" : document.path().filename().c_str());
+    const std::string name = document.path().empty() ? "untitled" : document.path().filename().string();
+    ImGui::TextUnformatted((name + (bench.panels.fileIsNew ? " (new)" : "")).c_str());
     ImGui::PopFont();
     ImGui::SameLine(0, 4);
     ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(tint::selected), "%s", document.dirty() ? "•" : " ");
     ImGui::SameLine(0, 10);
     if (quietButton(report, "bar.open", "Open", "Open a grammar (Ctrl+O), or drop it on the window")) dialogs_.open();
     ImGui::SameLine(0, 2);
-    if (quietButton(report, "bar.save", "Save", "Write the file (Ctrl+S)", document.dirty())) bench.save();
+    if (quietButton(report, "bar.save", "Save", "Write the file (Ctrl+S)", document.dirty() || bench.panels.fileIsNew))
+        bench.save();
     ImGui::SameLine(0, 2);
     if (ImGui::GetWindowWidth() > ImGui::GetFontSize() * widthForAll) {
         if (quietButton(report, "bar.save_as", "Save as", "Write another file (Ctrl+Shift+S)"))

@@ -22,6 +22,7 @@ Status Workbench::open(const std::filesystem::path& path, bool mayBegin) {
     show(std::move(*opened));
     endSteps();
     refresh();
+    panels.fileIsNew = isNew;
     if (isNew) say(fmt::format("{} is new: Ctrl+S writes the file", path.filename().string()));
     return Done{};
 }
@@ -29,6 +30,7 @@ Status Workbench::open(const std::filesystem::path& path, bool mayBegin) {
 void Workbench::show(document::Document other) {
     document = std::move(other);
     panels.naming.reset();  // it was about the document before
+    panels.fileIsNew = false;
     selection = {};
     view.framed = false;
     view.mesh.clear();

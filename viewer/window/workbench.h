@@ -96,6 +96,7 @@ struct ModelView {
 struct Panels {
     std::string notice;
     bool noticeIsProblem = false;
+    bool fileIsNew = false;  ///< the document's file hasn't been written yet, since it began in the window
     std::optional<std::pair<uint32_t, uint32_t>> reveal;  ///< bytes of the text to show, taken by the Text panel
     bool showText = false;                                ///< the Text panel is to come to the front
     bool revealRow = false;                               ///< the selected row is to be seen, taken by the Rules panel

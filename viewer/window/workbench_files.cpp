@@ -78,9 +78,12 @@ bool Workbench::mayClose() {
 
 bool Workbench::lookAtFiles() {
     if (session.usedFilesChanged()) asked_.revision = ~uint64_t(0);
+    const bool wasNew = panels.fileIsNew;
+    std::error_code ignored;
+    panels.fileIsNew = wasNew && !std::filesystem::exists(document.path(), ignored);
     switch (document.poll()) {
         case document::Document::Outside::Same:
-            return asked_.revision == ~uint64_t(0);
+            return asked_.revision == ~uint64_t(0) || panels.fileIsNew != wasNew;
         case document::Document::Outside::Reloaded:
             say("The file was changed by another program, and is read again");
             break;
