@@ -135,14 +135,29 @@ Field lowerClad(Graph& graph, const field::Clad& what, const SolidValue& ornamen
     return field::clad({frame.p, frame.half, scope.half(), arguments}, what, scope.axes.y);
 }
 
+namespace {
+
+/// The numbers of an ornament.
+std::vector<Argument> numbersOf(const SolidValue& ornament) {
+    std::vector<Argument> arguments;
+    for (size_t i = 0; i < ornament.args.size(); ++i)
+        arguments.push_back(numbersOf(ornament.primitive->parameters[i], ornament.args[i]));
+    return arguments;
+}
+
+}  // namespace
+
+std::optional<field::FacadeDetail> facadeDetailOf(const derive::ShapeTree& tree, derive::ShapeId shape) {
+    const derive::Extras* extras = tree.extrasOf(shape);
+    if (!extras || extras->clad.empty()) return std::nullopt;
+    return field::facadeDetail(numbersOf(extras->clad[0].ornament), tree.contentBox(shape).half());
+}
+
 std::optional<field::FacadeCell> facadeCellAt(const derive::ShapeTree& tree, derive::ShapeId shape, Vec3d p) {
     for (; shape != derive::none; shape = tree.shapes[shape].parent) {
         const auto* x = tree.extrasOf(shape);
         if (!x || x->clad.empty()) continue;
-        const SolidValue& ornament = x->clad[0].ornament;
-        std::vector<Argument> arguments;
-        for (size_t i = 0; i < ornament.args.size(); ++i)
-            arguments.push_back(numbersOf(ornament.primitive->parameters[i], ornament.args[i]));
+        const std::vector<Argument> arguments = numbersOf(x->clad[0].ornament);
         const derive::Scope box = tree.contentBox(shape);
         return field::facadeCell(arguments, box.half(), box.axes.transposed() * (p - box.centre));
     }

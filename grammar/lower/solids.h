@@ -26,4 +26,7 @@ field::Field lowerClad(field::Graph& graph, const field::Clad& what, const deriv
 /// one.
 std::optional<field::FacadeCell> facadeCellAt(const derive::ShapeTree& tree, derive::ShapeId shape, Vec3d p);
 
+/// The details of the ornament that clads a shape; none for a shape that isn't clad. O(shapes below).
+std::optional<field::FacadeDetail> facadeDetailOf(const derive::ShapeTree& tree, derive::ShapeId shape);
+
 }  // namespace sgm::lower

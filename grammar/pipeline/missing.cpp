@@ -8,11 +8,14 @@
 #include <set>
 #include <tuple>
 
+#include "grammar/lower/solids.h"
 #include "grammar/pipeline/buried.h"
 #include "grammar/pipeline/gaps.h"
 
 namespace sgm::pipeline {
 namespace {
+
+constexpr double leastDetail_cells = 0.5;  ///< of an ornament: narrower ones show in part
 
 /// The parts of one line of a grammar, or the walls or gaps at their faces.
 struct Line {
@@ -23,6 +26,53 @@ struct Line {
     bool atFaces = false;                ///< of boxes
     syntax::SourceSpan span{};           ///< of the first one's shape
 };
+
+/// By file, line and kind.
+using Lines = std::map<std::tuple<std::string, uint32_t, lower::ThinPart::Kind>, Line>;
+
+Lines linesOf(const Model& model, const std::vector<lower::ThinPart>& missing) {
+    Lines lines;
+    for (const lower::ThinPart& m : missing) {
+        const Part& part = model.lowered->provenance.parts[m.part];
+        Line& line = lines[{part.file(), part.line(), m.kind}];
+        if (line.parts++ == 0) {
+            const derive::ShapeId shape = model.lowered->shapeOf[m.part];
+            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, m.face >= 0, {}};
+            if (shape != derive::none) line.span = model.derivation.tree.shapes[shape].span;
+        }
+        line.thickness_m = std::min(line.thickness_m, m.thickness_m), line.cell_m = std::min(line.cell_m, m.cell_m);
+        line.missing += m.missing;
+    }
+    return lines;
+}
+
+/// An ornament on a line of a grammar whose details are narrower than half a cell.
+struct Ornament {
+    std::string name;
+    field::FacadeDetail detail{};  ///< of the shape with the narrowest
+    syntax::SourceSpan span{};
+
+    /// How many passes such cells hold.
+    int held(double cell_m) const {
+        const double lost = std::log(leastDetail_cells * cell_m / detail.width_m) / std::log(detail.scale);
+        return std::max(0, detail.passes - static_cast<int>(std::ceil(lost - 1e-9)));
+    }
+};
+
+/// By file and line.
+std::map<std::pair<std::string, uint32_t>, Ornament> fineOrnaments(const derive::ShapeTree& tree, double cell_m) {
+    std::map<std::pair<std::string, uint32_t>, Ornament> lines;
+    for (derive::ShapeId s = 0; s < tree.shapes.size(); ++s) {
+        const auto detail = lower::facadeDetailOf(tree, s);
+        if (!detail || detail->width_m >= leastDetail_cells * cell_m * (1 - 1e-6)) continue;
+        const syntax::SourceSpan span = tree.shapes[s].span;
+        if (!span.source) continue;
+        Ornament& line = lines[{span.source->name(), span.source->place(span.begin).line}];
+        if (!line.span.source || detail->width_m < line.detail.width_m)
+            line = {tree.extrasOf(s)->clad[0].name, *detail, span};
+    }
+    return lines;
+}
 
 /// The largest number of two digits that is no larger.
 double withTwoDigits(double value) {
@@ -42,18 +92,7 @@ Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const 
 std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
                                          const std::vector<lower::ThinPart>& missing, const std::string& object) {
     constexpr size_t most = 5;
-    std::map<std::tuple<std::string, uint32_t, lower::ThinPart::Kind>, Line> lines;
-    for (const lower::ThinPart& m : missing) {
-        const Part& part = model.lowered->provenance.parts[m.part];
-        Line& line = lines[{part.file(), part.line(), m.kind}];
-        if (line.parts++ == 0) {
-            const derive::ShapeId shape = model.lowered->shapeOf[m.part];
-            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, m.face >= 0, {}};
-            if (shape != derive::none) line.span = model.derivation.tree.shapes[shape].span;
-        }
-        line.thickness_m = std::min(line.thickness_m, m.thickness_m), line.cell_m = std::min(line.cell_m, m.cell_m);
-        line.missing += m.missing;
-    }
+    const Lines lines = linesOf(model, missing);
     const std::string whose = object.empty() ? "the mesh's cells" : fmt::format("the cells of '{}'", object);
     const auto remedy = [&](double cell_m) {
         if (!object.empty()) return fmt::format("--object-cell {:g}", withTwoDigits(cell_m));
@@ -84,6 +123,19 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
                          one ? "is" : "are", whose, grid.cell_m, one ? "s" : "",
                          100 * line.missing / static_cast<double>(line.parts), remedy(line.cell_m),
                          one ? "it" : "them"),
+             true});
+    }
+    size_t ornaments = 0;
+    for (const auto& [place, line] : fineOrnaments(model.derivation.tree, grid.cell_m)) {
+        if (ornaments++ == most) break;
+        warnings.push_back(
+            {line.span, fmt::format("{}:{}: ", place.first, place.second),
+             fmt::format(
+                 "{} of {:.3g} m hold {} of {} passes of the ornament{}, whose last details are {:.3g} m wide: {} "
+                 "holds all",
+                 whose, grid.cell_m, line.held(grid.cell_m), line.detail.passes,
+                 line.name.empty() ? "" : fmt::format(" '{}'", line.name), line.detail.width_m,
+                 remedy(line.detail.width_m / leastDetail_cells)),
              true});
     }
     if (!others.empty())

@@ -169,6 +169,15 @@ std::vector<FacadeBay> baysOf(const double r[3]) {
     return bays;
 }
 
+FacadeDetail facadeDetail(std::span<const Argument> a, Vec3d half) {
+    const Argument& c = a[size_t(Center)];
+    const double cube = 2 * std::max({c.value[0], c.value[1], c.value[2]});  // of the fractal, its side
+    FacadeDetail detail{0, static_cast<int>(solids::kifsForm(a).passes), number(a, Scale)};
+    const double stretch = leastStretch(a, distinctBays(a), tilingOf(a, half));
+    detail.width_m = cube / std::pow(detail.scale, detail.passes) / stretch;
+    return detail;
+}
+
 FacadeCell facadeCell(std::span<const Argument> arguments, Vec3d half, Vec3d p) {
     const Tiling t = tilingOf(arguments, half);
     Vec3d q = p - t.origin;

@@ -49,6 +49,15 @@ struct FacadeCell {
 /// Of a place in metres from the scope's middle.
 FacadeCell facadeCell(std::span<const Argument> arguments, Vec3d half, Vec3d p);
 
+/// What an ornament's passes leave of its widest parts.
+struct FacadeDetail {
+    double width_m = 0;  ///< of the bars and holes of the last pass; those of the pass before are `scale` times as wide
+    int passes = 1;
+    double scale = 3;
+};
+/// Of a facade over a scope of half-sizes `half`.
+FacadeDetail facadeDetail(std::span<const Argument> arguments, Vec3d half);
+
 /// A solid and who owns its surface and the ornament's (0: the solid's own origins stand).
 struct Clad {
     Field solid;
