@@ -12,6 +12,7 @@
 #include "grammar/rules/roads.h"
 #include "grammar/rules/words.h"
 #include "modeler/core/random.h"
+#include "modeler/plan/cut.h"
 #include "modeler/plan/validate.h"
 #include "modeler/town/blocks.h"
 #include "modeler/town/outline.h"
@@ -201,6 +202,17 @@ private:
                runPart(*part->body, "ground", context_.scope(), hashText("ground"));
     }
 
+    /// What of a road's area lies in the scope: where its middle runs along the border, half of the road is beyond it.
+    plan::Footprint withinScope(plan::Footprint area) const {
+        plan::Box2 box;
+        for (const plan::Polygon& polygon : area.polygons)
+            for (const Vec2 p : polygon.outer.points) box.add(p);
+        const Vec2 lo = parameters_.lo, hi = parameters_.hi;
+        if (box.lo.x < lo.x || box.hi.x > hi.x) area = plan::between(area, 0, lo.x, hi.x);
+        if (box.lo.z < lo.z || box.hi.z > hi.z) area = plan::between(area, 1, lo.z, hi.z);
+        return area;
+    }
+
     /// What tunnels take out of the ground.
     bool runBores(const RoadGraph& graph) {
         const Parts::Part* part = findPart(parts_, "bore");
@@ -210,7 +222,9 @@ private:
             const Vec2 front = town::unit(surface.to - surface.from);
             const town::Point at = town::pointAt((surface.from + surface.to) * .5);
             const uint64_t key = combine(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.z));
-            if (!context_.cutting([&] { return runOver(part, "bore", surface.area, front, key); })) return false;
+            const plan::Footprint area = withinScope(surface.area);
+            if (!area.polygons.empty() && !context_.cutting([&] { return runOver(part, "bore", area, front, key); }))
+                return false;
         }
         return true;
     }
@@ -279,7 +293,8 @@ private:
             const town::Point at = crossing ? graph.at(surface.node) : town::pointAt((surface.from + surface.to) * .5);
             const uint64_t key = combine(static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.z));
             const Vec2 front = crossing ? Vec2{0, 1} : town::unit(surface.to - surface.from);
-            if (!runOver(findPart(parts_, layer), layer, surface.area, front, key)) return false;
+            const plan::Footprint area = withinScope(surface.area);
+            if (!area.polygons.empty() && !runOver(findPart(parts_, layer), layer, area, front, key)) return false;
         }
         return true;
     }

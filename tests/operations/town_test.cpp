@@ -37,6 +37,19 @@ TEST(Network, PartsThatAreNotNamedStayEmpty) {
     EXPECT_GT(d.plan.features.size(), 50u);
 }
 
+TEST(Network, RoadsEndAtTheBorderOfTheScope) {
+    const Derivation d = derived(
+        "grammar 2\nroads Net { block = 60m  step = 60m  highway = 14m  street = 9m }\nterminal asphalt\n"
+        "start Town -> size (246, 10, 246) network Net { highway: asphalt | street: asphalt | crossing: asphalt }\n");
+    double farthest = 0;
+    for (const auto& f : d.plan.features)
+        if (f.layer == "highway" || f.layer == "street" || f.layer == "crossing")
+            for (const auto& polygon : f.area.polygons)
+                for (const plan::Vec2 p : polygon.outer.points)
+                    farthest = std::max({farthest, std::abs(p.x), std::abs(p.z)});
+    EXPECT_NEAR(farthest, 123, 1e-6) << "they come to it, and no further";
+}
+
 TEST(Network, ThePlanAloneIsThatOfTheWholeTown) {
     const std::string text = head + start +
                              "ground: lawn | highway: asphalt | street: asphalt | water: sea | park: grove | block: "
