@@ -34,8 +34,8 @@ Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipe
     return c;
 }
 
-void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool isInside) {
-    if (model.lowered->field.bounds.empty()) return;
+void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool isInside, bool isFog) {
+    if (model.lowered->field.bounds.empty() || (isFog && !isInside)) return;
     const Vec3f eye = camera.eye.as<float>();
     float value = 0;
     eval::Workspace workspace;
@@ -43,13 +43,18 @@ void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool 
     if (!(value < 0)) return;
     // The field bounds the distance only where it doesn't jump.
     const float depth_m = -value / std::max(1.f, model.lowered->field.lipschitz);
+    const std::string deep = depth_m > 0 ? fmt::format("at least {:.3g} m ", depth_m) : "";
+    if (isFog)
+        return printMessage(
+            "warning: the eye stands {}within the fog, where there is little else to be seen: leave --camera inside "
+            "out, say where the eye is, or lower --extinction\n",
+            deep);
     const char* const remedy = isInside ? "the model has no hollow to stand in: leave --camera inside out"
                                         : "move it, or write --camera inside";
     printMessage(
         "warning: the eye stands {}within the solid at ({:g}, {:g}, {:g}), from where walls are seen from within: "
         "{}\n",
-        depth_m > 0 ? fmt::format("at least {:.3g} m ", depth_m) : "", camera.eye.x, camera.eye.y, camera.eye.z,
-        remedy);
+        deep, camera.eye.x, camera.eye.y, camera.eye.z, remedy);
 }
 
 }  // namespace sgm::cli

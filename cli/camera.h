@@ -15,7 +15,8 @@ Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipe
                                  double aspect);
 
 /// Tells on stderr when the eye stands within the model's solid, from where walls are seen from their inner sides. Of
-/// objects that are kept apart nothing is known. `isInside`: '--camera inside' chose the place.
-void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool isInside);
+/// objects that are kept apart nothing is known. `isInside`: '--camera inside' chose the place;
+/// `isFog`: the solid is drawn as fog, of which it tells then alone.
+void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool isInside, bool isFog);
 
 }  // namespace sgm::cli

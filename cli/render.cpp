@@ -281,7 +281,7 @@ Status drawAll(const RenderRequest& request) {
     const auto camera = cameraFor(request.camera.place, request.turntable > 0, *model, bounds,
                                   static_cast<double>(options->width) / options->height);
     if (!camera.ok()) return camera.error();
-    if (!request.print.quiet && request.view != "fog") warnOfEye(*model, *camera, request.camera.place == "inside");
+    if (!request.print.quiet) warnOfEye(*model, *camera, request.camera.place == "inside", request.view == "fog");
     options->camera = withLamp(request, *model, bounds, *camera);
     options->samples = request.samples;
     options->threads = request.grid.threads;

@@ -60,6 +60,9 @@ TEST_F(Cli, PicturesTellAnEyeInRockAndASectionThatCutsNothing) {
         EXPECT_EQ(sgm(draw + " --section " + at).out.find("warning"), std::string::npos) << at;
     const Outcome solid =
         sgm("render " + grammar("start A -> cube size 8\n") + " --size 16x16 --camera inside -o " + path("a.png"));
+    const Outcome fog = sgm("render " + grammar("start A -> sphere size 8\n") +
+                            " --view fog --resolution 16 --size 16x16 --camera inside -o " + path("a.png"));
+    EXPECT_NE(fog.out.find("within the fog, where there is little else to be seen"), std::string::npos) << fog.out;
     EXPECT_NE(solid.out.find("the model has no hollow to stand in: leave --camera inside out"), std::string::npos)
         << solid.out;
 }
