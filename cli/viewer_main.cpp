@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", SGM_VERSION);
     sgm::window::AppOptions options;
     std::string size = "1280x800";
-    app.add_option("FILE", options.file, "Grammar file (.sgm); without one a new grammar begins");
+    app.add_option("FILE", options.file, "Grammar file (.sgm); without one, or with a new name, a new grammar begins");
     app.add_option("--size", size, "Pixels of the window, WxH")->capture_default_str();
     app.add_option("--report", options.report,
                    "Write where the widgets are and the state, as JSON, after every frame (for tests)");
