@@ -72,9 +72,9 @@ bool Cursor::expect(std::string_view wanted, std::string_view where, std::string
 bool Cursor::close(const Token& open) {
     const std::string_view opening = text(open);
     const std::string_view closing = opening == "(" ? ")" : opening == "[" ? "]" : "}";
-    const auto isNumber = [](const Token& token) { return token.kind == Token::Kind::Number; };
-    if (opening == "(" && isNumber(previous(1)) && isNumber(peek())) {
-        fail("two numbers stand side by side",
+    const bool isValue = previous(1).kind == Token::Kind::Number || previous(1).kind == Token::Kind::Word;
+    if (opening == "(" && isValue && at(Token::Kind::Number)) {
+        fail(previous(1).kind == Token::Kind::Word ? "two values stand side by side" : "two numbers stand side by side",
              "put ',' between them: " +
                  quoted("(" + std::string(text(previous(1))) + ", " + std::string(peekText()) + " …)"));
         return false;

@@ -91,6 +91,9 @@ bool Cursor::resume(size_t from, Next next) {
         if ((isFlat || open.empty()) && i >= failedAt_ && stopsAt(i, next)) return goOn(i);
         const std::string_view word = words[i];
         if (isFlat) continue;
+        // No parentheses reach beyond it: they were left open.
+        const bool isInBraces = std::find(open.begin(), open.end(), "{") != open.end();
+        if (next == Next::Sibling && word == "finally" && !isInBraces && i >= failedAt_) return goOn(i);
         if (isAnyOf(word, {"(", "[", "{"})) {
             open.push_back(word);
         } else if (isAnyOf(word, {")", "]", "}"})) {
@@ -99,7 +102,7 @@ bool Cursor::resume(size_t from, Next next) {
                 open.pop_back();
             if (open.empty()) return next != Next::Body && around == openingOf(word) && goOn(i);
             if (open.back() == openingOf(word)) open.pop_back();
-        } else if (isBar(word) && std::find(open.begin(), open.end(), "{") == open.end()) {
+        } else if (isBar(word) && !isInBraces) {
             return next != Next::Body && around == "{" && goOn(i);
         }
     }
