@@ -97,6 +97,22 @@ TEST_F(Picking, DroppingOnAJointRetargets) {
     EXPECT_NEAR(moved.shapes[moved.find("A/cone")].scope.centre.z, 1, 1e-9);
 }
 
+TEST(PickingUsedFiles, SaysWhereARuleForItsShapesHasToStand) {
+    Document document("grammar 1\nuse \"std/house.sgm\" { floors = 2 }\nstart A -> House + torus at +x\n");
+    const auto model = shown(document);
+    const derive::ShapeTree& tree = model->model.derivation.tree;
+    derive::ShapeId torus = derive::none;
+    for (derive::ShapeId s = 0; s != derive::none; s = tree.next(s))
+        if (tree.labels[tree.shapes[s].label] == "torus") torus = s;
+    ASSERT_NE(torus, derive::none);
+    size_t told = 0;
+    for (derive::ShapeId s = 0; s != derive::none; s = tree.next(s)) {
+        const auto edit = attach(document, *model, torus, s, 2);
+        told += !edit.ok() && edit.error().message.find("house.sgm', where the rules of '") != std::string::npos;
+    }
+    EXPECT_GT(told, 0u);
+}
+
 TEST(PickingUsedFiles, SaysWhoseTextItIs) {
     Document document("grammar 1\nuse \"std/house.sgm\" { floors = 2 }\nstart A -> House\n");
     const auto model = shown(document);

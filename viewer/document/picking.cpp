@@ -156,6 +156,15 @@ std::string symbolOf(const Derivation& derivation, ShapeId host) {
     return derivation.grammar->symbols[symbol].name;
 }
 
+/// The used file in which the rules of `host` stand, to which the document's own can't be added; "" where it has none.
+std::string otherFileOf(const Derivation& derivation, ShapeId host) {
+    const rules::Grammar& grammar = *derivation.grammar;
+    const rules::SymbolId symbol = derivation.tree.shapes[host].symbol;
+    if (symbol == rules::none || grammar.symbols[symbol].rules.empty()) return "";
+    const syntax::Source* source = grammar.rules[grammar.symbols[symbol].rules[0]].span.source;
+    return source == grammar.sources[0].get() ? "" : source->name();
+}
+
 /// What to write so that `moved` stands at a joint of a shape that its own rule doesn't match.
 std::string ruleFor(const Document& document, const BuiltModel& shown, const syntax::Element& element, ShapeId host,
                     std::string_view joint) {
@@ -167,6 +176,8 @@ std::string ruleFor(const Document& document, const BuiltModel& shown, const syn
     }
     const std::string name = symbol.empty() ? "Name" : symbol;
     const std::string rule = fmt::format("'rule {} -> {}'", name, text);
+    if (const std::string file = otherFileOf(derivation, host); !file.empty())
+        return fmt::format("write {} in '{}', where the rules of '{}' stand,", rule, file, symbol);
     return symbol.empty() ? fmt::format("give '{}' a name, as by ': Name', and write {}",
                                         derivation.tree.labels[derivation.tree.shapes[host].label], rule)
                           : "write " + rule;
