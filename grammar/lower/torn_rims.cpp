@@ -22,30 +22,33 @@ constexpr float awayCells = 0.1875f;  ///< from the surface: so far away is torn
 constexpr size_t fewestAway = 3;      ///< places
 constexpr double leastAway = 0.05;    ///< share of them
 
-/// How wide the narrowest smooth piece of each part is about in a mesh, metres: its area over half the length of its
-/// creases. Infinite for what blends into others all around, 0 of parts that the mesh doesn't show.
-std::vector<double> widthsOf(const mesh::Mesh& mesh, size_t partCount) {
+/// How wide the narrowest smooth piece of each part of those asked for is about in a mesh, metres: its area over half
+/// the length of its creases. Infinite for what blends into others all around, 0 of parts that the mesh doesn't show.
+std::vector<double> widthsOf(const mesh::Mesh& mesh, const std::vector<bool>& isAsked) {
     struct Piece {
         double area_m2 = 0, border_m = 0;
     };
     const std::vector<const Vec3f*> positions = positionsOf(mesh);
-    std::vector<uint64_t> first(positions.size());  // a piece at each vertex
-    std::vector<bool> isBorder(positions.size());
     const auto visit = [&](auto&& use) {
         for (const mesh::Chunk& c : mesh.chunks)
             for (size_t t = 0; t < c.origins.size(); ++t)
-                use(c.inMesh(c.triangles[t]), uint64_t{c.origins[t]} << 32 | (c.labels.empty() ? 0 : c.labels[t]));
+                use(c.inMesh(c.triangles[t]), c.origins[t], c.labels.empty() ? 0 : c.labels[t]);
     };
-    visit([&](const mesh::Triangle& corners, uint64_t key) {
-        for (int k = 0; k < 3; ++k) {
-            uint64_t& one = first[corners[k]];
-            if (one == 0) one = key;
-            if (static_cast<mesh::Label>(one) != static_cast<mesh::Label>(key)) isBorder[corners[k]] = true;
-        }
+    constexpr uint64_t unasked = ~uint64_t{0};
+    std::vector<uint64_t> labels(positions.size(), unasked);  // at vertices of parts that are asked for
+    visit([&](const mesh::Triangle& corners, OriginId part, mesh::Label label) {
+        if (!isAsked[part]) return;
+        for (int k = 0; k < 3; ++k) labels[corners[k]] = label;
+    });
+    std::vector<bool> isBorder(positions.size());
+    visit([&](const mesh::Triangle& corners, OriginId, mesh::Label label) {
+        for (int k = 0; k < 3; ++k)
+            if (labels[corners[k]] != unasked && labels[corners[k]] != label) isBorder[corners[k]] = true;
     });
     std::unordered_map<uint64_t, Piece> pieces;
-    visit([&](const mesh::Triangle& corners, uint64_t key) {
-        Piece& piece = pieces[key];
+    visit([&](const mesh::Triangle& corners, OriginId part, mesh::Label label) {
+        if (!isAsked[part]) return;
+        Piece& piece = pieces[uint64_t{part} << 32 | label];
         std::array<Vec3d, 3> p;
         for (size_t k = 0; k < 3; ++k) p[k] = positions[corners[static_cast<int>(k)]]->as<double>();
         piece.area_m2 += 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
@@ -53,7 +56,7 @@ std::vector<double> widthsOf(const mesh::Mesh& mesh, size_t partCount) {
             if (isBorder[corners[k]] && isBorder[corners[(k + 1) % 3]])
                 piece.border_m += length(p[static_cast<size_t>((k + 1) % 3)] - p[static_cast<size_t>(k)]);
     });
-    std::vector<double> widths_m(partCount);
+    std::vector<double> widths_m(isAsked.size());
     for (const auto& [key, piece] : pieces) {
         double& width_m = widths_m[key >> 32];
         const double own_m = 2 * piece.area_m2 / piece.border_m;
@@ -116,19 +119,24 @@ std::vector<Rim> rimsOf(const derive::Derivation& derivation, const Model& model
     if (among)
         for (const ThinPart& part : *among) isWanted[part.part] = true;
     const std::vector<bool> cuts = cutters(derivation.tree.shapes), blends = blendedShapes(derivation.tree.shapes);
-    const std::vector<double> widths_m = widthsOf(mesh, model.shapeOf.size());
-    std::vector<Rim> rims;
+    std::vector<bool> isRound(model.shapeOf.size());
+    bool anyRound = false;
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         const derive::ShapeId id = model.shapeOf[part];
-        if (id == derive::none || !isWanted[part] || cuts[id] || blends[id] || !(widths_m[part] < stripCells * cell_m))
-            continue;
+        if (id == derive::none || !isWanted[part] || cuts[id] || blends[id]) continue;
         const derive::Shape& shape = derivation.tree.shapes[id];
         if (shape.solid == derive::none || cellThatHolds(shape.scope) < cell_m) continue;
         const derive::SolidValue& solid = derivation.tree.solids[shape.solid];
         if (!solid.primitive || solid.primitive->plan != field::PlanUse::None || solid.primitive->hasFlatFaces)
             continue;
-        rims.push_back({part, derive::liftedScope(derivation, id), widths_m[part], {}, 0, 0});
+        isRound[part] = anyRound = true;
     }
+    std::vector<Rim> rims;
+    if (!anyRound) return rims;
+    const std::vector<double> widths_m = widthsOf(mesh, isRound);
+    for (OriginId part = 1; part < model.shapeOf.size(); ++part)
+        if (isRound[part] && widths_m[part] < stripCells * cell_m)
+            rims.push_back({part, derive::liftedScope(derivation, model.shapeOf[part]), widths_m[part], {}, 0, 0});
     return rims;
 }
 
