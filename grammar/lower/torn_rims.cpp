@@ -112,30 +112,31 @@ private:
     const Presence& presence_;
 };
 
-/// Round parts of which the mesh shows strips.
+/// Blocks and round parts of which the mesh shows strips.
 std::vector<Rim> rimsOf(const derive::Derivation& derivation, const Model& model, const mesh::Mesh& mesh, double cell_m,
                         const std::vector<ThinPart>* among) {
     std::vector<bool> isWanted(model.shapeOf.size(), !among);
     if (among)
         for (const ThinPart& part : *among) isWanted[part.part] = true;
     const std::vector<bool> cuts = cutters(derivation.tree.shapes), blends = blendedShapes(derivation.tree.shapes);
-    std::vector<bool> isRound(model.shapeOf.size());
-    bool anyRound = false;
+    std::vector<bool> isAsked(model.shapeOf.size());
+    bool anyAsked = false;
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         const derive::ShapeId id = model.shapeOf[part];
         if (id == derive::none || !isWanted[part] || cuts[id] || blends[id]) continue;
         const derive::Shape& shape = derivation.tree.shapes[id];
         if (shape.solid == derive::none || cellThatHolds(shape.scope) < cell_m) continue;
         const derive::SolidValue& solid = derivation.tree.solids[shape.solid];
-        if (!solid.primitive || solid.primitive->plan != field::PlanUse::None || solid.primitive->hasFlatFaces)
+        if (!solid.primitive || solid.primitive->plan != field::PlanUse::None ||
+            (solid.primitive->hasFlatFaces && !isBox(solid, shape.scope)))
             continue;
-        isRound[part] = anyRound = true;
+        isAsked[part] = anyAsked = true;
     }
     std::vector<Rim> rims;
-    if (!anyRound) return rims;
-    const std::vector<double> widths_m = widthsOf(mesh, isRound);
+    if (!anyAsked) return rims;
+    const std::vector<double> widths_m = widthsOf(mesh, isAsked);
     for (OriginId part = 1; part < model.shapeOf.size(); ++part)
-        if (isRound[part] && widths_m[part] < stripCells * cell_m)
+        if (isAsked[part] && widths_m[part] < stripCells * cell_m)
             rims.push_back({part, derive::liftedScope(derivation, model.shapeOf[part]), widths_m[part], {}, 0, 0});
     return rims;
 }

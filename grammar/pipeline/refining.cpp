@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "grammar/lower/thin_cells.h"
 #include "grammar/lower/torn_rims.h"
@@ -100,16 +101,28 @@ private:
         return 0;
     }
 
+    /// Halves cells so often. Where they come to take others with them that were halved more often, and hold there what
+    /// larger ones don't, all of them are halved as often as these.
     Status refine(const mesh::CellSet& cells, int halvings, bool& isRefined) {
         if (cells.empty()) return Done{};
         const Stopwatch watch;
-        const auto refined = mesh::refineCells(mesh_, model_.tape, grid_, cells,
-                                               {halvings, mostTriangles_, context_.threads}, context_.progress);
-        halvingSeconds_ += watch.seconds();
-        if (!refined.ok()) return refined.error();
-        for (const Vec3i cell : refined->list()) halved_[static_cast<size_t>(halvings)].insert(cell);
-        isRefined |= !refined->empty();
-        return Done{};
+        for (;;) {
+            std::optional<mesh::Mesh> before;
+            const auto finer = std::span(halved_).subspan(static_cast<size_t>(halvings) + 1);
+            if (std::any_of(finer.begin(), finer.end(), [](const mesh::CellSet& set) { return !set.empty(); }))
+                before = mesh_;
+            const auto refined = mesh::refineCells(mesh_, model_.tape, grid_, cells,
+                                                   {halvings, mostTriangles_, context_.threads}, context_.progress);
+            if (!refined.ok()) return refined.error();
+            if (const int finest = halvingsIn(*refined); finest > halvings) {
+                mesh_ = std::move(*before), halvings = finest;
+                continue;
+            }
+            for (const Vec3i cell : refined->list()) halved_[static_cast<size_t>(halvings)].insert(cell);
+            isRefined |= !refined->empty();
+            halvingSeconds_ += watch.seconds();
+            return Done{};
+        }
     }
 
     const Model& model_;
