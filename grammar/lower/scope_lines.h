@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "grammar/derive/shapes.h"
+#include "grammar/derive/shape_tree.h"
 #include "modeler/field/convex.h"
 
 namespace sgm::lower {
