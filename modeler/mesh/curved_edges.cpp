@@ -28,7 +28,7 @@ constexpr size_t edgesAtOnce = 8;       ///< that lie beside each other
 
 /// The piece on one side of an edge.
 struct EdgeSide {
-    uint32_t triangle = 0;
+    uint32_t halfEdge = 0;  ///< 3 · triangle + the corner that it begins at
     OriginId origin = 0;
     Label label = 0;
     Vec3d inward;  ///< unit, into the triangle, across the edge
@@ -222,7 +222,8 @@ private:
         CurvedEdge& e = edges_[place];
         const Vec3d apex = chunk_.positions[chunk_.triangles[t][(k + 2) % 3]].as<double>() - e.middle;
         const Vec3d up = apex - e.along * dot(apex, e.along);
-        e.sides[e.sideCount++] = {t, chunk_.origins[t], chunk_.labels[t], normalized(up), length(up), {}};
+        e.sides[e.sideCount++] = {
+            3 * t + static_cast<uint32_t>(k), chunk_.origins[t], chunk_.labels[t], normalized(up), length(up), {}};
     }
 
     const EdgeSplitter& mesh_;
@@ -254,11 +255,8 @@ std::vector<EdgeSplit> splitsOf(const EdgeSplitter& mesh, const eval::Tape& fiel
     std::sort(edges.begin(), edges.end(), [](const CurvedEdge& x, const CurvedEdge& y) { return x.place < y.place; });
     std::vector<EdgeSplit> splits;
     for (const CurvedEdge& e : edges)
-        splits.push_back({e.a,
-                          e.b,
-                          {e.sides[0].triangle, e.sides[1].triangle},
-                          e.at.as<float>(),
-                          {e.sides[0].normal, e.sides[1].normal}});
+        splits.push_back(
+            {{e.sides[0].halfEdge, e.sides[1].halfEdge}, e.at.as<float>(), {e.sides[0].normal, e.sides[1].normal}});
     return splits;
 }
 
@@ -266,8 +264,10 @@ std::vector<EdgeSplit> splitsOf(const EdgeSplitter& mesh, const eval::Tape& fiel
 
 Result<size_t> splitCurvedEdges(Mesh& mesh, const eval::Tape& field, double tolerance_m, int threads,
                                 Progress* progress) {
-    if (mesh.hasPositionsOnly() || mesh.triangleCount() == 0) return size_t{0};
-    EdgeSplitter splitter(joinChunks(mesh), threads, progress);
+    if (mesh.hasPositionsOnly()) return size_t{0};
+    Chunk whole = joinChunks(mesh);
+    if (whole.labels.empty()) return size_t{0};
+    EdgeSplitter splitter(std::move(whole), threads, progress);
     size_t count = 0;
     for (int round = 0; round < mostSplits; ++round) {
         const std::vector<EdgeSplit> splits = splitsOf(splitter, field, tolerance_m, threads, progress);

@@ -59,12 +59,7 @@ std::vector<EdgeSplitter::Part> EdgeSplitter::partsOf(std::span<const EdgeSplit>
     splitsOf_.assign(chunk_.triangles.size(), unsplit);
     for (uint32_t i = 0; i < splits.size(); ++i) {
         if (isLeftOut_[i]) continue;
-        for (const uint32_t t : splits[i].triangles)
-            for (int k = 0; k < 3; ++k) {
-                const uint32_t from = chunk_.triangles[t][k], to = chunk_.triangles[t][(k + 1) % 3];
-                if (std::min(from, to) == splits[i].a && std::max(from, to) == splits[i].b)
-                    splitsOf_[t][static_cast<size_t>(k)] = i;
-            }
+        for (const uint32_t edge : splits[i].halfEdges) splitsOf_[edge / 3][edge % 3] = i;
     }
     std::vector<Part> parts;
     for (uint32_t t = 0; t < chunk_.triangles.size(); ++t) {
@@ -74,7 +69,7 @@ std::vector<EdgeSplitter::Part> EdgeSplitter::partsOf(std::span<const EdgeSplit>
             corners[k] = {chunk_.triangles[t][static_cast<int>(k)], normals_[t][k]};
             const uint32_t i = splitsOf_[t][k];
             if (i != noSplit)
-                corners[3 + k] = {firstVertex + i, splits[i].normals[splits[i].triangles[0] == t ? 0 : 1]};
+                corners[3 + k] = {firstVertex + i, splits[i].normals[splits[i].halfEdges[0] / 3 == t ? 0 : 1]};
         }
         addParts(t, corners, parts);
     }

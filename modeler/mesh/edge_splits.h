@@ -13,10 +13,9 @@
 
 namespace sgm::mesh {
 
-/// An edge between vertices a < b and what its middle becomes.
+/// An edge and what its middle becomes.
 struct EdgeSplit {
-    uint32_t a = 0, b = 0;
-    std::array<uint32_t, 2> triangles{};  ///< beside it
+    std::array<uint32_t, 2> halfEdges{};  ///< 3 · triangle + the corner that it begins at, in both triangles beside it
     Vec3f at;                             ///< metres
     std::array<Vec3f, 2> normals{};       ///< unit, of the vertex in either triangle and what becomes of it
 };

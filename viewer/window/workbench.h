@@ -139,7 +139,7 @@ public:
     /// Asks whether to go on with what a crash left behind of this document; where none is open, of any. Says so where
     /// it left something of another one.
     void offerAbandoned();
-    /// Opens another file; asks first where the present text isn't saved. `then` runs once it is open.
+    /// Opens another file; wants confirmation where the current text isn't saved. `then` runs once it is open.
     void drop(const std::filesystem::path& path, const std::function<void()>& then = {});
     /// True when nothing is unsaved; else asks, and `leaving` tells later.
     bool mayClose();
