@@ -27,14 +27,40 @@ bool areBracesPaired(std::span<const std::string_view> words) {
     return depth == 0;
 }
 
+/// The brackets that are open.
+class OpenBrackets {
+public:
+    bool empty() const { return open_.empty(); }
+    /// Whether one of them is a curly brace. O(1).
+    bool holdBrace() const { return braces_ > 0; }
+    /// The innermost; "" where none is open.
+    std::string_view innermost() const { return open_.empty() ? "" : open_.back(); }
+    void open(std::string_view word) {
+        open_.push_back(word);
+        braces_ += word == "{";
+    }
+    void close() {
+        if (open_.empty()) return;
+        braces_ -= open_.back() == "{";
+        open_.pop_back();
+    }
+
+private:
+    std::vector<std::string_view> open_;
+    size_t braces_ = 0;
+};
+
+bool opens(std::string_view word) { return isAnyOf(word, {"(", "[", "{"}); }
+bool closes(std::string_view word) { return isAnyOf(word, {")", "]", "}"}); }
+
 /// The innermost bracket that stays open in `words`; "" where none does.
 std::string_view openedIn(std::span<const std::string_view> words) {
-    std::vector<std::string_view> open;
+    OpenBrackets brackets;
     for (const std::string_view word : words) {
-        if (isAnyOf(word, {"(", "[", "{"})) open.push_back(word);
-        if (isAnyOf(word, {")", "]", "}"}) && !open.empty()) open.pop_back();
+        if (opens(word)) brackets.open(word);
+        if (closes(word)) brackets.close();
     }
-    return open.empty() ? "" : open.back();
+    return brackets.innermost();
 }
 
 /// A word that stands where a declaration's should, and resembles one.
@@ -86,23 +112,23 @@ bool Cursor::resume(size_t from, Next next) {
         return true;
     };
     const std::string_view around = openedIn(std::span(words).first(from));
-    std::vector<std::string_view> open;
+    OpenBrackets brackets;
     for (size_t i = from; i < tokens_.size(); ++i) {
-        if ((isFlat || open.empty()) && i >= failedAt_ && stopsAt(i, next)) return goOn(i);
-        const std::string_view word = words[i];
+        if ((isFlat || brackets.empty()) && i >= failedAt_ && stopsAt(i, next)) return goOn(i);
         if (isFlat) continue;
+        const std::string_view word = words[i];
         // No parentheses reach beyond it: they were left open.
-        const bool isInBraces = std::find(open.begin(), open.end(), "{") != open.end();
-        if (next == Next::Sibling && word == "finally" && !isInBraces && i >= failedAt_) return goOn(i);
-        if (isAnyOf(word, {"(", "[", "{"})) {
-            open.push_back(word);
-        } else if (isAnyOf(word, {")", "]", "}"})) {
+        if (next == Next::Sibling && word == "finally" && !brackets.holdBrace() && i >= failedAt_) return goOn(i);
+        if (opens(word)) {
+            brackets.open(word);
+        } else if (closes(word)) {
             // What was left open within is closed too; what wasn't opened closes what stands around.
-            while (!open.empty() && open.back() != openingOf(word) && (word == "}" || open.back() != "{"))
-                open.pop_back();
-            if (open.empty()) return next != Next::Body && around == openingOf(word) && goOn(i);
-            if (open.back() == openingOf(word)) open.pop_back();
-        } else if (isBar(word) && !isInBraces) {
+            while (!brackets.empty() && brackets.innermost() != openingOf(word) &&
+                   (word == "}" || brackets.innermost() != "{"))
+                brackets.close();
+            if (brackets.empty()) return next != Next::Body && around == openingOf(word) && goOn(i);
+            if (brackets.innermost() == openingOf(word)) brackets.close();
+        } else if (isBar(word) && !brackets.holdBrace()) {
             return next != Next::Body && around == "{" && goOn(i);
         }
     }
