@@ -107,22 +107,21 @@ private:
         if (cells.empty()) return Done{};
         const Stopwatch watch;
         for (;;) {
-            std::optional<mesh::Mesh> before;
-            const auto finer = std::span(halved_).subspan(static_cast<size_t>(halvings) + 1);
-            if (std::any_of(finer.begin(), finer.end(), [](const mesh::CellSet& set) { return !set.empty(); }))
-                before = mesh_;
-            const auto refined = mesh::refineCells(mesh_, model_.tape, grid_, cells,
-                                                   {halvings, mostTriangles_, context_.threads}, context_.progress);
+            auto refined = mesh::refineCells(mesh_, model_.tape, grid_, cells,
+                                             {halvings, mostTriangles_, context_.threads}, context_.progress);
             if (!refined.ok()) return refined.error();
-            if (const int finest = halvingsIn(*refined); finest > halvings) {
-                mesh_ = std::move(*before), halvings = finest;
+            if (!*refined) break;
+            if (const int finest = halvingsIn((*refined)->cells); finest > halvings) {
+                halvings = finest;
                 continue;
             }
-            for (const Vec3i cell : refined->list()) halved_[static_cast<size_t>(halvings)].insert(cell);
-            isRefined |= !refined->empty();
-            halvingSeconds_ += watch.seconds();
-            return Done{};
+            mesh_ = std::move((*refined)->mesh);
+            for (const Vec3i cell : (*refined)->cells.list()) halved_[static_cast<size_t>(halvings)].insert(cell);
+            isRefined = true;
+            break;
         }
+        halvingSeconds_ += watch.seconds();
+        return Done{};
     }
 
     const Model& model_;

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <array>
 
-#include "modeler/core/parallel.h"
-
 namespace sgm::mesh {
 namespace {
 
 constexpr uint32_t noVertex = 0xffffffffu;
-constexpr size_t trianglesAtOnce = 4096;
+constexpr int cubeBits = 3;  ///< of the cells along a cube in which triangles wait
 // In cells:
 constexpr double nearest = 0.08;  ///< of two vertices that are one
 constexpr double mostBent = 0.2;  ///< from a coarse edge to the fine vertices in its place
+
+Vec3i cubeWith(Vec3i cell) { return {cell.x >> cubeBits, cell.y >> cubeBits, cell.z >> cubeBits}; }
 
 /// An edge on a side, in the sense of the triangles in the side's cell.
 struct SideEdge {
@@ -26,7 +26,7 @@ float coordinateOf(const CellSide& side, const Grid& grid) {
 
 /// The edges that the triangles in one of the cells at a side have on it, in the sense of the side's cell. An edge
 /// between two of these triangles isn't one.
-std::vector<SideEdge> edgesOn(const CellSide& side, const Grid& grid, const SurfaceInCells& surface, bool isBeyond) {
+std::vector<SideEdge> edgesOn(const CellSide& side, const Grid& grid, SurfaceInCells& surface, bool isBeyond) {
     std::vector<SideEdge> edges;
     const float at = coordinateOf(side, grid);
     const Chunk& chunk = surface.surface();
@@ -50,7 +50,7 @@ std::vector<SideEdge> edgesOn(const CellSide& side, const Grid& grid, const Surf
 /// The cuts on one side.
 class Seam {
 public:
-    Seam(const CellSide& side, const Grid& grid, const SurfaceInCells& coarse, const SurfaceInCells& fine)
+    Seam(const CellSide& side, const Grid& grid, SurfaceInCells& coarse, SurfaceInCells& fine)
         : side_(side),
           grid_(grid),
           coarse_(coarse.surface()),
@@ -160,24 +160,43 @@ private:
 
 }  // namespace
 
-void SurfaceInCells::follow(int threads) {
-    const size_t known = cells_.size();
-    cells_.resize(surface_.triangles.size()), before_.resize(cells_.size());
-    parallelFor((cells_.size() - known + trianglesAtOnce - 1) / trianglesAtOnce, threads, nullptr,
-                [&](size_t step, int) {
-                    const size_t first = known + step * trianglesAtOnce;
-                    for (size_t t = first; t < std::min(cells_.size(), first + trianglesAtOnce); ++t)
-                        cells_[t] = mesh::cellOf(grid_, surface_.positions, surface_.triangles[t]);
-                });
-    for (size_t t = known; t < cells_.size(); ++t) {
-        uint32_t& last = last_[cells_[t]];
+Vec3i SurfaceInCells::cubeOf(uint32_t triangle) const {
+    constexpr float cubeCells = 1 << cubeBits;
+    constexpr float sure = 1e-2f;  // cells: farther from a cube's sides, rounding doesn't matter
+    const Triangle& t = surface_.triangles[triangle];
+    const Vec3f centre = (surface_.positions[t.x] + surface_.positions[t.y] + surface_.positions[t.z]) * (1.0f / 3);
+    const Vec3f inCubes = (centre - grid_.origin) * (1 / (grid_.cell_m * cubeCells));
+    const Vec3i cube{static_cast<int>(inCubes.x), static_cast<int>(inCubes.y), static_cast<int>(inCubes.z)};
+    const Vec3f inside = inCubes - cube.as<float>();
+    if (minComponent(inside) * cubeCells > sure && (1 - maxComponent(inside)) * cubeCells > sure) return cube;
+    return cubeWith(cellOf(triangle));
+}
+
+void SurfaceInCells::follow() {
+    const size_t known = before_.size();
+    before_.resize(surface_.triangles.size());
+    for (size_t t = known; t < before_.size(); ++t) {
+        uint32_t& last = lastOfCube_[cubeOf(static_cast<uint32_t>(t))];
         before_[t] = last;
         last = static_cast<uint32_t>(t);
     }
 }
 
-std::optional<SeamFit> fitSeam(const CellSide& side, const Grid& grid, const SurfaceInCells& coarse,
-                               const SurfaceInCells& fine) {
+void SurfaceInCells::sortCubeOf(Vec3i cell) {
+    const Vec3i cube = cubeWith(cell);
+    if (lastOfCube_.find(cube) == CellNumbers::none) return;
+    std::vector<uint32_t> waiting;
+    uint32_t& lastInCube = lastOfCube_[cube];
+    for (uint32_t t = lastInCube; t != CellNumbers::none; t = before_[t]) waiting.push_back(t);
+    lastInCube = CellNumbers::none;
+    for (auto t = waiting.rbegin(); t != waiting.rend(); ++t) {
+        uint32_t& last = lastOfCell_[cellOf(*t)];
+        before_[*t] = last;
+        last = *t;
+    }
+}
+
+std::optional<SeamFit> fitSeam(const CellSide& side, const Grid& grid, SurfaceInCells& coarse, SurfaceInCells& fine) {
     return Seam(side, grid, coarse, fine).fit();
 }
 

@@ -14,29 +14,39 @@
 
 namespace sgm::mesh {
 
-/// Which triangles of a surface lie in which cell of a grid.
+/// Which triangles of a surface lie in which cell of a grid. They are sorted by cubes of cells, and by cells when one
+/// of a cube is asked for: few are, of a large surface.
 class SurfaceInCells {
 public:
     /// Both have to stay; the surface may get more triangles behind those that it has, see `follow`.
     SurfaceInCells(const Chunk& surface, const Grid& grid) : surface_(surface), grid_(grid) {}
-    /// Looks at triangles that are new. O(n) in them, on `threads` threads (0: all).
-    void follow(int threads);
+    /// Looks at triangles that are new. O(n) in them.
+    void follow();
 
     const Chunk& surface() const { return surface_; }
-    Vec3i cellOf(uint32_t triangle) const { return cells_[triangle]; }
-    bool isEmpty(Vec3i cell) const { return last_.find(cell) == CellNumbers::none; }
-    /// Calls `visit` with the triangles in a cell.
+    Vec3i cellOf(uint32_t triangle) const {
+        return mesh::cellOf(grid_, surface_.positions, surface_.triangles[triangle]);
+    }
+    bool isEmpty(Vec3i cell) {
+        sortCubeOf(cell);
+        return lastOfCell_.find(cell) == CellNumbers::none;
+    }
+    /// Calls `visit` with the triangles in a cell, the last one first.
     template <class Visit>
-    void visit(Vec3i cell, Visit&& visit) const {
-        for (uint32_t t = last_.find(cell); t != CellNumbers::none; t = before_[t]) visit(t);
+    void visit(Vec3i cell, Visit&& visit) {
+        sortCubeOf(cell);
+        for (uint32_t t = lastOfCell_.find(cell); t != CellNumbers::none; t = before_[t]) visit(t);
     }
 
 private:
+    Vec3i cubeOf(uint32_t triangle) const;
+    void sortCubeOf(Vec3i cell);
+
     const Chunk& surface_;
     const Grid& grid_;
-    std::vector<Vec3i> cells_;      ///< by triangle
-    std::vector<uint32_t> before_;  ///< by triangle: the one before it in its cell
-    CellNumbers last_;              ///< of the cells' triangles
+    PageVector<uint32_t> before_;  ///< by triangle: the one before it in its cell, or in its cube until it is sorted
+    CellNumbers lastOfCell_;       ///< of the cells' triangles
+    CellNumbers lastOfCube_;       ///< of the cubes' triangles that aren't sorted by cells
 };
 
 /// The side of a cell.
@@ -77,7 +87,6 @@ struct SeamFit {
 /// Fits the coarse triangles beyond a side to the fine ones before it, which are in the side's cell. Nothing where one
 /// of the cuts has no vertex for one of the other, or runs another way: then the coarse cells don't show what the fine
 /// ones do. O(k²) in the edges on the side.
-std::optional<SeamFit> fitSeam(const CellSide& side, const Grid& grid, const SurfaceInCells& coarse,
-                               const SurfaceInCells& fine);
+std::optional<SeamFit> fitSeam(const CellSide& side, const Grid& grid, SurfaceInCells& coarse, SurfaceInCells& fine);
 
 }  // namespace sgm::mesh

@@ -7,6 +7,7 @@
 #include "modeler/mesh/cell_seams.h"
 #include "modeler/mesh/fine_cells.h"
 #include "modeler/mesh/one_chunk.h"
+#include "modeler/mesh/surface_patch.h"
 #include "modeler/mesh/wrong_meetings.h"
 
 namespace sgm::mesh {
@@ -17,6 +18,7 @@ constexpr int mostWidenings = 4;            ///< the first of them: cells that d
 constexpr size_t mostGrowth = 4;            ///< times the cells that were asked for there may come to be
 constexpr size_t marginDivisor = 4;         ///< of the cells, for how many are meshed beyond where they grow
 constexpr size_t leastGrowth = 512;         ///< as many may always
+constexpr int reachOfSeam = 2;              ///< cells beside one that is halved: triangles in them may cross
 constexpr float sameNormal = 1.0f - 1e-5f;  ///< cosine between normals that needn't be told apart
 constexpr uint32_t noFine = 0xffffffffu;
 
@@ -26,47 +28,58 @@ struct Fits {
     std::vector<SeamFit::Edge> edges;  ///< ascending by triangle
 };
 
-/// Two surfaces as one, the fine one in some cells and the coarse one in the others.
+/// Two surfaces as one, around some cells: the fine one in these and the coarse one beside them.
 class JoinedSurface {
 public:
-    JoinedSurface(const SurfaceInCells& coarseCells, const SurfaceInCells& fineCells, const CellSet& cells,
-                  const Fits& fits)
-        : coarse_(coarseCells.surface()),
+    /// `coarse` holds the coarse triangles in the cells, and those that the seam changes or that may cross these.
+    JoinedSurface(const SurfaceInCells& coarseCells, const SurfacePatch& coarse, const SurfaceInCells& fineCells,
+                  const CellSet& cells, const Fits& fits)
+        : coarse_(coarse.surface),
           fine_(fineCells.surface()),
-          fits_(fits),
+          fits_(fitsIn(coarse, fits)),
           firstFine_(static_cast<uint32_t>(coarse_.positions.size())) {
-        const Chunk &coarse = coarse_, &fine = fine_;
-        const size_t vertices = coarse.positions.size() + fine.positions.size();
-        const size_t triangles = coarse.triangles.size() + fine.triangles.size();
+        const size_t vertices = coarse_.positions.size() + fine_.positions.size();
+        const size_t triangles = coarse_.triangles.size() + fine_.triangles.size();
         made_.positions.reserve(vertices), made_.normals.reserve(vertices);
         made_.triangles.reserve(triangles), made_.origins.reserve(triangles), made_.labels.reserve(triangles);
-        for (const Chunk* surface : {&coarse, &fine}) {
+        for (const Chunk* surface : {&coarse_, &fine_}) {
             made_.positions.insert(made_.positions.end(), surface->positions.begin(), surface->positions.end());
             made_.normals.insert(made_.normals.end(), surface->normals.begin(), surface->normals.end());
         }
-        for (const ConfinedVertex& v : coarse.confined)
-            if (fits.fineOf[v.vertex] == noFine) made_.confined.push_back(v);
-        for (const ConfinedVertex& v : fine.confined) made_.confined.push_back({firstFine_ + v.vertex, v.place});
-        made_.faceted = coarse.faceted;
-        for (const uint32_t v : fine.faceted) made_.faceted.push_back(firstFine_ + v);
-        addCoarse(coarseCells, cells);
+        made_.confined = coarse_.confined, made_.faceted = coarse_.faceted;
+        for (const ConfinedVertex& v : fine_.confined) made_.confined.push_back({firstFine_ + v.vertex, v.place});
+        for (const uint32_t v : fine_.faceted) made_.faceted.push_back(firstFine_ + v);
+        addCoarse(coarseCells, coarse.triangles, cells);
         addFine(fineCells, cells);
     }
 
-    /// The coarse triangles that changed, by their numbers in the coarse surface, ascending by that in the joined one.
+    /// The coarse triangles that changed, by their numbers in the patch, ascending by that in the joined one.
     struct Changed {
         uint32_t triangle, before;
     };
     const std::vector<Changed>& changed() const { return changed_; }
     const Chunk& surface() const { return made_; }
-    Chunk release() { return std::move(made_); }
+    ReplacedPatch release() { return {std::move(made_), std::move(triangleOf_)}; }
 
 private:
+    /// The numbers of triangles and vertices are those of the patch.
+    static Fits fitsIn(const SurfacePatch& patch, const Fits& fits) {
+        const auto placeIn = [](const std::vector<uint32_t>& numbers, uint32_t number) {
+            return static_cast<uint32_t>(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
+        };
+        Fits own;
+        for (const uint32_t v : patch.vertices) own.fineOf.push_back(fits.fineOf[v]);
+        for (const SeamFit::Edge& e : fits.edges)
+            own.edges.push_back({placeIn(patch.triangles, e.triangle), placeIn(patch.vertices, e.from),
+                                 placeIn(patch.vertices, e.to), e.inner});
+        return own;
+    }
+
     /// Adds the coarse triangles in other cells; edges of the cut become those of the fine one.
-    void addCoarse(const SurfaceInCells& surface, const CellSet& cells) {
+    void addCoarse(const SurfaceInCells& surface, const std::vector<uint32_t>& triangles, const CellSet& cells) {
         auto next = fits_.edges.begin();
         visitTriangles(coarse_, [&](uint32_t t, std::span<const CornerNormal> normals) {
-            if (cells.contains(surface.cellOf(t))) return;
+            if (cells.contains(surface.cellOf(triangles[t]))) return;
             const auto first = next;
             while (next != fits_.edges.end() && next->triangle == t) ++next;
             addTriangle(t, normals, {first, next});
@@ -156,18 +169,20 @@ private:
         const auto triangle = static_cast<uint32_t>(made_.triangles.size());
         made_.triangles.push_back({part[0].vertex, part[1].vertex, part[2].vertex});
         made_.origins.push_back(coarse_.origins[of]), made_.labels.push_back(coarse_.labels[of]);
+        triangleOf_.push_back(of);
         for (uint32_t k = 0; k < 3; ++k)
             if (part[k].hasOwn) made_.cornerNormals.push_back({3 * triangle + k, part[k].normal});
     }
 
     const Chunk &coarse_, &fine_;
-    const Fits& fits_;
+    const Fits fits_;
     const uint32_t firstFine_;
     Chunk made_;
+    std::vector<uint32_t> triangleOf_;  ///< by coarse triangle of the joined surface: the one that it stands for
     std::vector<Changed> changed_;
 };
 
-/// The changed triangles that cross another one, as they are numbered in the coarse surface.
+/// The changed triangles that cross another one, as they are numbered in the patch.
 std::vector<uint32_t> crossingTriangles(const JoinedSurface& joined, int threads, const Progress* progress) {
     const Chunk& surface = joined.surface();
     std::vector<uint32_t> changed;
@@ -185,21 +200,21 @@ std::vector<uint32_t> crossingTriangles(const JoinedSurface& joined, int threads
 
 class Refiner {
 public:
-    Refiner(const Mesh& mesh, const eval::Tape& field, const Grid& grid, const RefineOptions& options,
+    Refiner(const Chunk& coarse, const eval::Tape& field, const Grid& grid, const RefineOptions& options,
             Progress* progress)
         : grid_(grid),
           options_(options),
           progress_(progress),
-          coarse_(joinChunks(mesh)),
+          coarse_(coarse),
           coarseCells_(coarse_, grid),
           mesher_(field, grid, options.halvings, options.threads, progress),
           fineCells_(mesher_.surface(), grid) {
-        coarseCells_.follow(options.threads);
+        coarseCells_.follow();
     }
 
-    /// The surface and the cells that were meshed anew; these are none where it can't be done. Error::Budget where the
-    /// mesh would have too many triangles.
-    Result<std::pair<Chunk, CellSet>> refine(CellSet cells) {
+    /// The surface and the cells that were meshed anew. Nothing where it can't be done. Error::Budget where the mesh
+    /// would have too many triangles.
+    Result<std::optional<RefinedMesh>> refine(CellSet cells) {
         const size_t mostCells = std::max(mostGrowth * cells.size(), leastGrowth);
         if (CellSet first = affordable(cells); first.size() < cells.size() && options_.halvings > 1)
             return Error{Error::Kind::Budget, "cells halved so often have too many triangles"};
@@ -213,13 +228,14 @@ public:
             Fits fits;
             if (misfits->empty()) misfits = join(cells, fits);
             if (misfits->empty()) {
-                JoinedSurface joined(coarseCells_, fineCells_, cells, fits);
+                const SurfacePatch patch(coarse_, trianglesAround(cells));
+                JoinedSurface joined(coarseCells_, patch, fineCells_, cells, fits);
                 for (const uint32_t t : crossingTriangles(joined, options_.threads, progress_))
-                    misfits->insert(coarseCells_.cellOf(t));
+                    misfits->insert(coarseCells_.cellOf(patch.triangles[t]));
                 if (misfits->empty() && !cancelled(progress_)) {
-                    Chunk made = joined.release();
-                    dropUnusedVertices(made);
-                    return std::pair(std::move(made), std::move(cells));
+                    RefinedMesh made{{}, std::move(cells)};
+                    made.mesh.chunks.push_back(withReplaced(coarse_, patch, joined.release()));
+                    return std::optional(std::move(made));
                 }
             }
             if (cancelled(progress_)) return cancelledError();
@@ -228,13 +244,13 @@ public:
             else
                 cells = componentsWithout(cells, *misfits);
         }
-        return std::pair(Chunk{}, CellSet{});
+        return std::optional<RefinedMesh>();
     }
 
 private:
     /// The first cells, as many as the mesh can have triangles for, where the fine surface is about as large as the
     /// coarse one.
-    CellSet affordable(const CellSet& cells) const {
+    CellSet affordable(const CellSet& cells) {
         const size_t ofCell = size_t{2} << 2 * options_.halvings;
         CellSet first;
         size_t triangles = coarse_.triangles.size();
@@ -249,12 +265,12 @@ private:
     Status meshFinely(std::span<const Vec3i> cells) {
         if (cancelled(progress_)) return cancelledError();
         if (Status s = mesher_.add(cells); !s) return s;
-        fineCells_.follow(options_.threads);
+        fineCells_.follow();
         return Done{};
     }
 
     /// Cells, those next to them, and about so many more around that have surface: few times are to suffice.
-    std::vector<Vec3i> withMargin(const std::vector<Vec3i>& cells, size_t margin) const {
+    std::vector<Vec3i> withMargin(const std::vector<Vec3i>& cells, size_t margin) {
         CellSet all;
         for (const Vec3i cell : cells) all.insert(cell);
         const size_t asked = all.size();
@@ -268,11 +284,27 @@ private:
     }
 
     /// Those that some surface reaches.
-    CellSet reachedOf(const CellSet& cells) const {
+    CellSet reachedOf(const CellSet& cells) {
         CellSet reached;
         for (const Vec3i cell : cells.list())
             if (!coarseCells_.isEmpty(cell) || !fineCells_.isEmpty(cell)) reached.insert(cell);
         return reached;
+    }
+
+    /// The coarse triangles in the cells and in those that their seam reaches, ascending.
+    std::vector<uint32_t> trianglesAround(const CellSet& cells) {
+        CellSet all;
+        for (const Vec3i cell : cells.list()) all.insert(cell);
+        size_t next = 0;
+        for (int distance = 0; distance < reachOfSeam; ++distance)
+            for (const size_t end = all.size(); next < end; ++next)
+                visitAround(Vec3i(all.list()[next]), [&](Vec3i beside) {
+                    if (isInGrid(grid_, beside)) all.insert(beside);
+                });
+        std::vector<uint32_t> triangles;
+        for (const Vec3i cell : all.list()) coarseCells_.visit(cell, [&](uint32_t t) { triangles.push_back(t); });
+        std::sort(triangles.begin(), triangles.end());
+        return triangles;
     }
 
     /// Adds cells beyond sides on which the surfaces don't fit, until they do. Returns those that are too many.
@@ -304,7 +336,7 @@ private:
     }
 
     /// Fits the surfaces on all sides of the cells. Returns the cells beyond those that say other than others.
-    CellSet join(const CellSet& cells, Fits& fits) const {
+    CellSet join(const CellSet& cells, Fits& fits) {
         CellSet misfits;
         fits.fineOf.assign(coarse_.positions.size(), noFine);
         std::vector<uint32_t> coarseOf(mesher_.surface().positions.size(), noFine);
@@ -332,7 +364,7 @@ private:
     const Grid& grid_;
     const RefineOptions options_;
     Progress* const progress_;
-    const Chunk coarse_;
+    const Chunk& coarse_;
     SurfaceInCells coarseCells_;
     FineCells mesher_;
     SurfaceInCells fineCells_;
@@ -340,19 +372,17 @@ private:
 
 }  // namespace
 
-Result<CellSet> refineCells(Mesh& mesh, const eval::Tape& field, const Grid& grid, const CellSet& cells,
-                            const RefineOptions& options, Progress* progress) {
-    if (cells.empty() || mesh.hasPositionsOnly()) return CellSet{};
+Result<std::optional<RefinedMesh>> refineCells(const Mesh& mesh, const eval::Tape& field, const Grid& grid,
+                                               const CellSet& cells, const RefineOptions& options, Progress* progress) {
+    if (cells.empty() || mesh.hasPositionsOnly()) return std::optional<RefinedMesh>();
+    const bool isOneChunk = mesh.chunks.size() == 1;
+    const Chunk joined = isOneChunk ? Chunk{} : joinChunks(mesh);
     for (RefineOptions now = options; now.halvings > 0; --now.halvings) {
-        auto refined = Refiner(mesh, field, grid, now, progress).refine(cells);
-        if (!refined.ok() && refined.error().kind == Error::Kind::Cancelled) return refined.error();
-        if (!refined.ok() && refined.error().kind == Error::Kind::Budget) continue;
-        if (!refined.ok() || refined->second.empty()) break;
-        mesh.chunks.clear();
-        mesh.chunks.push_back(std::move(refined->first));
-        return std::move(refined->second);
+        auto refined = Refiner(isOneChunk ? mesh.chunks[0] : joined, field, grid, now, progress).refine(cells);
+        if (refined.ok() || refined.error().kind == Error::Kind::Cancelled) return refined;
+        if (refined.error().kind != Error::Kind::Budget) break;
     }
-    return CellSet{};
+    return std::optional<RefinedMesh>();
 }
 
 }  // namespace sgm::mesh

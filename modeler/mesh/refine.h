@@ -1,8 +1,10 @@
 // Cells of a mesh that are halved where they hold more than they can show.
-// Enters: a crisp mesh, its field, and cells. Leaves: the mesh with the surface of smaller cells in these. Assumes a
+// Enters: a crisp mesh, its field, and cells. Leaves: a mesh with the surface of smaller cells in these. Assumes a
 // mesh as it comes from `polygonize`, or from this function: the surface is cut along the sides of the cells, and what
 // stays takes the vertices of the finer cut, so that nothing gapes.
 #pragma once
+
+#include <optional>
 
 #include "modeler/core/progress.h"
 #include "modeler/eval/tape.h"
@@ -17,12 +19,17 @@ struct RefineOptions {
     int threads = 0;             ///< 0: all; the result is the same for any number
 };
 
+/// A mesh some of whose cells are halved.
+struct RefinedMesh {
+    Mesh mesh;  ///< of one chunk
+    CellSet cells;
+};
+
 /// Meshes `cells` of `grid` anew with smaller cells. Where the two surfaces don't fit on a side of the cells, more
 /// cells around are taken; where that doesn't help, or triangles would cross, a component of cells stays as it was.
-/// Returns the cells that were meshed anew; where there are any, the mesh has one chunk afterwards. None in a build
-/// without CGAL, and where smaller cells are too small or too many to be meshed. O(n) in the mesh, and what meshing the
-/// cells takes. Error::Cancelled, after which the mesh is as it was.
-Result<CellSet> refineCells(Mesh& mesh, const eval::Tape& field, const Grid& grid, const CellSet& cells,
-                            const RefineOptions& options, Progress* progress);
+/// Nothing where no cells could be halved: so in a build without CGAL, and where smaller cells are too small or too
+/// many to be meshed. What meshing the cells takes, and O(n) in the mesh for copying it. Error::Cancelled.
+Result<std::optional<RefinedMesh>> refineCells(const Mesh& mesh, const eval::Tape& field, const Grid& grid,
+                                               const CellSet& cells, const RefineOptions& options, Progress* progress);
 
 }  // namespace sgm::mesh
