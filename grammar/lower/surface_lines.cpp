@@ -16,10 +16,10 @@ constexpr int halvings = 8;         ///< of a step around a crossing
 
 }  // namespace
 
-double SurfaceLines::find(const derive::Scope& scope, OriginId part, const Density& density, const eval::Tape& tape,
-                          eval::Workspace& workspace) {
+double SurfaceLines::find(const derive::Scope& scope, bool isBox, OriginId part, const Density& density,
+                          const eval::Tape& tape, eval::Workspace& workspace) {
     const double spacing_m = listLines(scope, density.mostAlong);
-    followLines(tape, workspace);
+    isBox ? probeFaces(tape, workspace) : followLines(tape, workspace);
     return spacing_m * keepOwn(part, tape, workspace, density.mostPoints);
 }
 
@@ -46,15 +46,15 @@ double SurfaceLines::listLines(const derive::Scope& scope, int mostAlong) {
                 // Off the middle, so that no line lies in a plane of symmetry.
                 share[u] = 2 * (i + 0.535) / alongU - 1, share[v] = 2 * (j + 0.535) / alongV - 1;
                 share[axis] = -lineReach;
-                addLine(scope.point(share), scope.axes * alongAxis(axis), scope.size[axis] * lineReach);
+                addLine(scope.point(share), scope.axes * alongAxis(axis), scope.size[axis]);
             }
     }
     return spacing_m;
 }
 
-/// Clips a line to the bounds.
-void SurfaceLines::addLine(Vec3d from, Vec3d along, double length_m) {
-    double begin = 0, end = length_m;
+/// Clips a line through a scope of such a size to the bounds.
+void SurfaceLines::addLine(Vec3d from, Vec3d along, double size_m) {
+    double begin = 0, end = size_m * lineReach;
     for (int axis = 0; axis < 3; ++axis) {
         const double low = static_cast<double>(bounds_.lo[axis]) - cell_m_ - from[axis],
                      high = static_cast<double>(bounds_.hi[axis]) + cell_m_ - from[axis];
@@ -65,7 +65,8 @@ void SurfaceLines::addLine(Vec3d from, Vec3d along, double length_m) {
         const double toLow = low / along[axis], toHigh = high / along[axis];
         begin = std::max(begin, std::min(toLow, toHigh)), end = std::min(end, std::max(toLow, toHigh));
     }
-    if (begin < end) rays_.push_back({from, along, begin, end, 0});
+    if (begin < end)
+        rays_.push_back({from, along, begin, end, {size_m * (lineReach - 1) / 2, size_m * (lineReach + 1) / 2}, 0});
 }
 
 /// Leaves in `found_` where lines cross the field's surface: each step is about as long as the field says.
@@ -97,6 +98,23 @@ void SurfaceLines::followLines(const eval::Tape& tape, eval::Workspace& workspac
         rays_.resize(kept);
     }
     halve(found_, tape, workspace);
+}
+
+/// Leaves in `found_` where lines cross the field's surface on the scope's faces.
+void SurfaceLines::probeFaces(const eval::Tape& tape, eval::Workspace& workspace) {
+    found_.clear(), points_.clear();
+    for (const Ray& ray : rays_)
+        for (const double at_m : ray.faces_m) {
+            if (at_m < ray.at_m || at_m > ray.end_m) continue;
+            const double half_m = 0.5 * leastStep * cell_m_;
+            found_.push_back({ray.from + ray.along * (at_m - half_m), ray.from + ray.along * (at_m + half_m)});
+            points_.add(found_.back().from.as<float>()), points_.add(found_.back().to.as<float>());
+        }
+    evaluate(tape, workspace);
+    size_t kept = 0;
+    for (size_t i = 0; i < found_.size(); ++i)
+        if ((values_[2 * i] < 0) != (values_[2 * i + 1] < 0)) found_[kept++] = found_[i];
+    found_.resize(kept);
 }
 
 /// Halves the steps around crossings.

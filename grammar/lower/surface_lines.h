@@ -2,6 +2,7 @@
 // Enters: a scope and a field's tape. Leaves: points. Assumes nothing of a mesh.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -29,8 +30,9 @@ public:
     SurfaceLines(const Box3f& bounds, float cell_m) : bounds_(bounds), cell_m_(static_cast<double>(cell_m)) {}
 
     /// Finds where lines along the scope's axes, about a cell apart, cross the field's surface and that is the part's
-    /// alone. Returns how far apart that is at most, metres. The tape is good for a box around the scope.
-    double find(const derive::Scope& scope, OriginId part, const Density& density, const eval::Tape& tape,
+    /// alone. Returns how far apart that is at most, metres. The tape is good for a box around the scope. Of a box, the
+    /// scope's faces alone are looked at.
+    double find(const derive::Scope& scope, bool isBox, OriginId part, const Density& density, const eval::Tape& tape,
                 eval::Workspace& workspace);
     std::span<const Bracket> found() const { return found_; }
 
@@ -42,13 +44,15 @@ private:
     struct Ray {
         Vec3d from, along;
         double at_m = 0, end_m = 0;
+        std::array<double, 2> faces_m;  ///< where it crosses the scope's faces
         float value = 0;
         Vec3d place() const { return from + along * at_m; }
     };
 
     double listLines(const derive::Scope& scope, int mostAlong);
-    void addLine(Vec3d from, Vec3d along, double length_m);
+    void addLine(Vec3d from, Vec3d along, double size_m);
     void followLines(const eval::Tape& tape, eval::Workspace& workspace);
+    void probeFaces(const eval::Tape& tape, eval::Workspace& workspace);
     double keepOwn(OriginId part, const eval::Tape& tape, eval::Workspace& workspace, size_t mostPoints);
     void evaluate(const eval::Tape& tape, eval::Workspace& workspace);
 

@@ -46,9 +46,13 @@ std::vector<double> widthsOf(const mesh::Mesh& mesh, const std::vector<bool>& is
             if (labels[corners[k]] != unasked && labels[corners[k]] != label) isBorder[corners[k]] = true;
     });
     std::unordered_map<uint64_t, Piece> pieces;
+    Piece* last = nullptr;
+    uint64_t lastKey = 0;
     visit([&](const mesh::Triangle& corners, OriginId part, mesh::Label label) {
         if (!isAsked[part]) return;
-        Piece& piece = pieces[uint64_t{part} << 32 | label];
+        const uint64_t key = uint64_t{part} << 32 | label;
+        if (!last || key != lastKey) last = &pieces[key], lastKey = key;  // neighbours mostly are of one piece
+        Piece& piece = *last;
         std::array<Vec3d, 3> p;
         for (size_t k = 0; k < 3; ++k) p[k] = positions[corners[static_cast<int>(k)]]->as<double>();
         piece.area_m2 += 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
@@ -77,6 +81,7 @@ std::vector<bool> blendedShapes(const derive::Shapes& shapes) {
 struct Rim {
     OriginId part = 0;
     derive::Scope scope;
+    bool isBox = false;
     double width_m = 0;
     std::vector<Vec3d> points;  ///< of its surface
     size_t away = 0;            ///< of them, where the mesh isn't
@@ -98,7 +103,7 @@ public:
     void probe(std::span<Rim> rims, std::span<const Box3f> boxes) {
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) {
             Rim& rim = rims[i];
-            rim.spacing_m = surface_.find(rim.scope, rim.part, density, tape, tapes_.workspace());
+            rim.spacing_m = surface_.find(rim.scope, rim.isBox, rim.part, density, tape, tapes_.workspace());
             for (const SurfaceLines::Bracket& b : surface_.found()) {
                 rim.points.push_back(b.middle());
                 if (!presence_.isNear(b.middle().as<float>(), rim.part)) ++rim.away;
@@ -119,7 +124,7 @@ std::vector<Rim> rimsOf(const derive::Derivation& derivation, const Model& model
     if (among)
         for (const ThinPart& part : *among) isWanted[part.part] = true;
     const std::vector<bool> cuts = cutters(derivation.tree.shapes), blends = blendedShapes(derivation.tree.shapes);
-    std::vector<bool> isAsked(model.shapeOf.size());
+    std::vector<bool> isAsked(model.shapeOf.size()), areBoxes(model.shapeOf.size());
     bool anyAsked = false;
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         const derive::ShapeId id = model.shapeOf[part];
@@ -127,8 +132,9 @@ std::vector<Rim> rimsOf(const derive::Derivation& derivation, const Model& model
         const derive::Shape& shape = derivation.tree.shapes[id];
         if (shape.solid == derive::none || cellThatHolds(shape.scope) < cell_m) continue;
         const derive::SolidValue& solid = derivation.tree.solids[shape.solid];
+        areBoxes[part] = isBox(solid, shape.scope);
         if (!solid.primitive || solid.primitive->plan != field::PlanUse::None ||
-            (solid.primitive->hasFlatFaces && !isBox(solid, shape.scope)))
+            (solid.primitive->hasFlatFaces && !areBoxes[part]))
             continue;
         isAsked[part] = anyAsked = true;
     }
@@ -137,7 +143,8 @@ std::vector<Rim> rimsOf(const derive::Derivation& derivation, const Model& model
     const std::vector<double> widths_m = widthsOf(mesh, isAsked);
     for (OriginId part = 1; part < model.shapeOf.size(); ++part)
         if (isAsked[part] && widths_m[part] < stripCells * cell_m)
-            rims.push_back({part, derive::liftedScope(derivation, model.shapeOf[part]), widths_m[part], {}, 0, 0});
+            rims.push_back(
+                {part, derive::liftedScope(derivation, model.shapeOf[part]), areBoxes[part], widths_m[part], {}, 0, 0});
     return rims;
 }
 
