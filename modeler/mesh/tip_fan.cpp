@@ -6,7 +6,6 @@
 #include <iterator>
 #include <limits>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "modeler/mesh/box_finder.h"
 #include "modeler/mesh/exact_meeting.h"
@@ -67,13 +66,13 @@ enum class Axis { FromMiddle, MeanNormal };
 class FanBuilder {
 public:
     FanBuilder(const TipSurface& surface, uint32_t vertex, Vec3d apex, Axis axis)
-        : surface_(surface), vertex_(vertex), guess_(apex), axisKind_(axis) {}
+        : surface_(surface), vertex_(vertex), guess_(apex), axisKind_(axis), cutOff_(surface.scratch.vertices) {}
 
     /// What is cut off at so many times the depth of the highest vertex; see `fanAt`. Nothing where the field on the
     /// fan isn't near 0, and unless `takesConfined`, where the border goes through a confined vertex.
     std::optional<TipFan> fan(double cut, bool takesConfined) {
         top_ = vertex_, apex_ = guess_, lacksConfined_ = false;
-        cutOff_ = {top_};
+        cutOff_.clear(surface_.positions.size()), cutOff_.insert(top_);
         triangles_.assign(around(top_).begin(), around(top_).end());
         axis_ = axisOf();
         double within_m = apexSlack * surface_.cell_m;
@@ -111,24 +110,28 @@ private:
     /// The vertices that can be reached from the top above some depth, and their triangles; the highest becomes the
     /// top. False where there are too many.
     bool gather(double end) {
-        cutOff_ = {top_};
+        MarkedNumbers& gathered = surface_.scratch.triangles;
+        gathered.clear(surface_.triangles.size());
+        cutOff_.clear(surface_.positions.size()), cutOff_.insert(top_);
         triangles_.clear();
+        size_t aroundVertices = 0;
         std::vector<uint32_t> pending{top_};
         while (!pending.empty()) {
             const uint32_t v = pending.back();
             pending.pop_back();
             if (depthOf(v) < depthOf(top_)) top_ = v;
             for (const uint32_t t : around(v)) {
+                ++aroundVertices;
+                if (!gathered.insert(t)) continue;
                 triangles_.push_back(t);
                 for (int k = 0; k < 3; ++k) {
                     const uint32_t other = surface_.triangles[t].corners[k];
-                    if (depthOf(other) < end && cutOff_.insert(other).second) pending.push_back(other);
+                    if (depthOf(other) < end && cutOff_.insert(other)) pending.push_back(other);
                 }
             }
-            if (triangles_.size() > mostCutOff) return false;
+            if (aroundVertices > mostCutOff) return false;
         }
         std::sort(triangles_.begin(), triangles_.end());
-        triangles_.erase(std::unique(triangles_.begin(), triangles_.end()), triangles_.end());
         return true;
     }
 
@@ -264,8 +267,8 @@ private:
     uint32_t top_ = 0;
     Vec3d apex_, axis_;
     bool lacksConfined_ = false;
-    std::unordered_set<uint32_t> cutOff_;  ///< vertices
-    std::vector<uint32_t> triangles_;      ///< with such vertices, ascending
+    MarkedNumbers& cutOff_;            ///< vertices
+    std::vector<uint32_t> triangles_;  ///< with such vertices, ascending
 };
 
 }  // namespace
@@ -283,7 +286,8 @@ std::optional<TangentPlanes::Intersection> TangentPlanes::meeting() const {
 std::vector<float> valuesAt(const TipSurface& surface, std::span<const Vec3f> points) {
     std::vector<float> x, y, z, values(points.size());
     for (const Vec3f& p : points) x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
-    eval::evaluate(surface.field, {x.data(), y.data(), z.data(), points.size()}, values.data(), surface.workspace);
+    eval::evaluate(surface.field, {x.data(), y.data(), z.data(), points.size()}, values.data(),
+                   surface.scratch.workspace);
     return values;
 }
 

@@ -3,9 +3,11 @@
 // that doesn't cross itself.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "modeler/core/progress.h"
@@ -48,6 +50,29 @@ struct TipTriangle {
     uint8_t ownNormals;  ///< a bit for each corner that has a normal of its own, as at creases
 };
 
+/// Numbers below a bound, few of which are in the set at a time: each in O(1), and so is leaving all out.
+class MarkedNumbers {
+public:
+    /// Empties it; numbers are less than `end`.
+    void clear(size_t end) {
+        if (marks_.size() < end) marks_.resize(end, 0);
+        if (++mark_ == 0) std::fill(marks_.begin(), marks_.end(), 0), mark_ = 1;
+    }
+    /// Whether it was not there.
+    bool insert(uint32_t number) { return std::exchange(marks_[number], mark_) != mark_; }
+    bool contains(uint32_t number) const { return marks_[number] == mark_; }
+
+private:
+    std::vector<uint32_t> marks_;
+    uint32_t mark_ = 0;
+};
+
+/// What fans are made with, one after the other.
+struct TipScratch {
+    eval::Workspace workspace;
+    MarkedNumbers vertices, triangles;
+};
+
 /// A mesh and its field.
 struct TipSurface {
     std::span<const Vec3f> positions;     ///< metres
@@ -56,7 +81,7 @@ struct TipSurface {
     std::span<const uint32_t> around;       ///< triangles by vertex, one vertex's after another's
     std::span<const uint32_t> firstAround;  ///< by vertex: its first in `around`; at last the end
     const eval::Tape& field;
-    eval::Workspace& workspace;
+    TipScratch& scratch;
     double cell_m;
 };
 

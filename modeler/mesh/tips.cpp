@@ -49,8 +49,8 @@ struct WideVertex {
 class Tips {
 public:
     Tips(const Mesh& mesh, const eval::Tape& field, double cell_m, int threads, Progress* progress)
-        : mesh_(mesh), threads_(threads), progress_(progress), surface_{{}, isConfined_, {},         {},
-                                                                        {}, field,       workspace_, cell_m} {
+        : mesh_(mesh), threads_(threads), progress_(progress), surface_{{}, isConfined_, {},       {},
+                                                                        {}, field,       scratch_, cell_m} {
         size_t vertices = 0;
         uint32_t triangles = 0;
         for (const Chunk& c : mesh_.chunks) {
@@ -362,7 +362,7 @@ private:
     const Mesh& mesh_;
     const int threads_;
     Progress* const progress_;
-    eval::Workspace workspace_;
+    TipScratch scratch_;
     std::vector<uint32_t> firstTriangle_;    ///< by chunk
     PageVector<Vec3f> positions_, normals_;  ///< by vertex of the whole mesh
     std::vector<bool> isConfined_;           ///< by vertex
