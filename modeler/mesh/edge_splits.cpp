@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "modeler/mesh/one_chunk.h"
+#include "modeler/mesh/wrong_meetings.h"
 
 namespace sgm::mesh {
 namespace {
@@ -19,7 +20,7 @@ Vec3d directionOf(std::span<const Vec3f> positions, const Triangle& t) {
 }  // namespace
 
 EdgeSplitter::EdgeSplitter(Chunk chunk, int threads, Progress* progress)
-    : chunk_(std::move(chunk)), threads_(threads), progress_(progress), finder_(chunk_.positions, threads, progress) {
+    : chunk_(std::move(chunk)), threads_(threads), progress_(progress) {
     listNormals();
     changed_.resize(chunk_.triangles.size());
     std::iota(changed_.begin(), changed_.end(), 0u);
@@ -37,7 +38,6 @@ void EdgeSplitter::listNormals() {
 size_t EdgeSplitter::split(std::span<const EdgeSplit> splits) {
     const auto firstVertex = static_cast<uint32_t>(chunk_.positions.size());
     for (const EdgeSplit& s : splits) chunk_.positions.push_back(s.at), chunk_.normals.push_back(s.normals[0]);
-    finder_.moveTo(chunk_.positions);
     isLeftOut_.assign(splits.size(), false);
     for (;;) {
         const std::vector<Part> parts = partsOf(splits, firstVertex);
@@ -108,18 +108,17 @@ void EdgeSplitter::addParts(uint32_t t, const std::array<Corner, 6>& corners, st
 
 /// Leaves out splits whose parts are at fault; false where there are none.
 bool EdgeSplitter::leaveOutFaulty(std::span<const Part> parts) {
-    std::vector<SimpleTriangle> all;
-    std::vector<uint32_t> from;
+    std::vector<Triangle> all;
+    std::vector<uint32_t> from, changed, faulty;
     for (uint32_t t = 0; t < chunk_.triangles.size(); ++t)
-        if (splitsOf_[t] == unsplit) all.push_back({chunk_.triangles[t], 0}), from.push_back(t);
-    std::vector<uint8_t> isSound{1};  // what isn't split was so before
-    std::vector<uint32_t> faulty;
+        if (splitsOf_[t] == unsplit) all.push_back(chunk_.triangles[t]), from.push_back(t);
     for (const Part& part : parts) {
         if (isFolded(part)) faulty.push_back(part.from);
-        all.push_back({part.corners, static_cast<uint32_t>(isSound.size())}), from.push_back(part.from);
-        isSound.push_back(0);
+        changed.push_back(static_cast<uint32_t>(all.size()));
+        all.push_back(part.corners), from.push_back(part.from);
     }
-    for (const uint32_t t : finder_.findCrossings(all, isSound)) faulty.push_back(from[t]);
+    for (const auto& pair : findWrongMeetings(chunk_.positions, all, changed, threads_, progress_))
+        for (const uint32_t t : pair) faulty.push_back(from[t]);
     bool leavesOut = false;
     for (const uint32_t t : faulty)
         for (const uint32_t i : splitsOf_[t])

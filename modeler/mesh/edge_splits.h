@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "modeler/core/progress.h"
-#include "modeler/mesh/faults.h"
 #include "modeler/mesh/mesh.h"
 
 namespace sgm::mesh {
@@ -34,7 +33,7 @@ public:
 
     /// Splits edges, each listed once, but for those of triangles that would fold over or cross others. A triangle
     /// with two or three of them becomes three or four. Returns how many were split; after cancelling none. O(n) for n
-    /// triangles in the first round, later on for those that changed but for listing.
+    /// triangles.
     size_t split(std::span<const EdgeSplit> splits);
 
     /// The mesh, without vertices that have no triangle. The splitter is of no use afterwards.
@@ -62,7 +61,6 @@ private:
     Chunk chunk_;
     const int threads_;
     Progress* const progress_;
-    FaultFinder finder_;
     std::vector<std::array<Vec3f, 3>> normals_;
     std::vector<uint32_t> changed_;
     std::vector<bool> isLeftOut_;                    ///< by split

@@ -215,18 +215,6 @@ std::vector<uint32_t> FaultFinder::find(std::span<const SimpleTriangle> triangle
     std::vector<uint32_t> faults;
     if (triangles.empty()) return faults;
     findNonManifold(positions_, triangles, faults);
-    return withCrossings(std::move(faults), triangles, soundRegions);
-}
-
-std::vector<uint32_t> FaultFinder::findCrossings(std::span<const SimpleTriangle> triangles,
-                                                 std::span<const uint8_t> soundRegions) {
-    return triangles.empty() ? std::vector<uint32_t>() : withCrossings({}, triangles, soundRegions);
-}
-
-/// Adds the triangles that meet others, and remembers those that are sound.
-std::vector<uint32_t> FaultFinder::withCrossings(std::vector<uint32_t> faults,
-                                                 std::span<const SimpleTriangle> triangles,
-                                                 std::span<const uint8_t> soundRegions) {
     const Hierarchy hierarchy(positions_, triangles, findFresh(triangles), soundRegions, threads_);
     const auto note = [&faults](uint32_t t) { faults.push_back(t); };
     std::vector<Hierarchy::Pair> tasks{{1, 1}}, next;

@@ -18,29 +18,18 @@ public:
     FaultFinder(std::span<const Vec3f> positions, int threads, const Progress* progress)
         : positions_(positions), threads_(threads), progress_(progress) {}
 
-    /// From now on looks up positions there, where more may follow those that there were.
-    void moveTo(std::span<const Vec3f> positions) {
-        positions_ = positions;
-        if (!isFirst_) soundBegin_.resize(positions.size() + 1, soundBegin_.back());
-    }
-
     /// The triangles that meet another one elsewhere than in common vertices and edges, or whose edge another triangle
     /// runs along the same way, or which stand around a vertex together with another fan; ascending. Exact on the
     /// coordinates given. Triangles are compared by a hierarchy of boxes. `soundRegions`, by region or empty: other
     /// than 0 where triangles of the region are known not to meet each other wrongly, as what was triangulated in a
     /// plane; those aren't compared. O(n log n) as a rule.
     std::vector<uint32_t> find(std::span<const SimpleTriangle> triangles, std::span<const uint8_t> soundRegions = {});
-    /// The same of a surface that is a 2-manifold for certain, where triangles need only be compared.
-    std::vector<uint32_t> findCrossings(std::span<const SimpleTriangle> triangles,
-                                        std::span<const uint8_t> soundRegions);
 
 private:
-    std::vector<uint32_t> withCrossings(std::vector<uint32_t> faults, std::span<const SimpleTriangle> triangles,
-                                        std::span<const uint8_t> soundRegions);
     std::vector<uint8_t> findFresh(std::span<const SimpleTriangle> triangles) const;
     void remember(std::span<const SimpleTriangle> triangles, std::span<const uint32_t> faults);
 
-    std::span<const Vec3f> positions_;
+    const std::span<const Vec3f> positions_;
     const int threads_;
     const Progress* const progress_;
     bool isFirst_ = true;
