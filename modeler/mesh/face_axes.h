@@ -1,10 +1,12 @@
 // Lines in the plane of a cell's face: where the fields of two pieces are zero together.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
 #include "modeler/mesh/piece_samples.h"
+#include "modeler/mesh/subdivide.h"
 
 namespace sgm::mesh {
 
@@ -16,6 +18,28 @@ struct FaceAxes {
     explicit FaceAxes(int axis) : u((axis + 1) % 3), v((axis + 2) % 3) {}
     double dot(Vec3f g, Vec3f d) const { return double{g[u]} * d[u] + double{g[v]} * d[v]; }
     double length(Vec3f g) const { return std::sqrt(dot(g, g)); }
+};
+
+/// The rectangle of a face within its plane, metres.
+struct FaceRectangle {
+    FaceAxes axes;
+    Vec3f low, high;
+
+    FaceRectangle(const Grid& grid, Vec3i at, int axis)
+        : axes(axis), low(grid.corner(at.x, at.y, at.z)), high(grid.corner(at.x + 1, at.y + 1, at.z + 1)) {}
+
+    /// The nearest point that is so far from the sides.
+    Vec3f within(Vec3f p, float margin_m) const {
+        for (const int axis : {axes.u, axes.v})
+            p[axis] = std::max(low[axis] + margin_m, std::min(high[axis] - margin_m, p[axis]));
+        return p;
+    }
+    /// The nearest float beside the sides: far from the origin, rounding puts points onto them.
+    Vec3f offSides(Vec3f p) const {
+        for (const int axis : {axes.u, axes.v})
+            p[axis] = std::clamp(p[axis], std::nextafter(low[axis], high[axis]), std::nextafter(high[axis], low[axis]));
+        return p;
+    }
 };
 
 /// A piece's field to first order: its value and derivative at a point.

@@ -269,8 +269,8 @@ bool FaceCreases::moveAlongLine(const FaceSegment& segment, PiecePoint& piece) c
     if (mayLieAt(segment, piece.at)) return true;
     const FaceAxes axes(segment.axis);
     const double way[] = {-static_cast<double>(piece.gradient[axes.v]), static_cast<double>(piece.gradient[axes.u])};
-    const Vec3f low = inFace(segment, grid_->corner(segment.face.x, segment.face.y, segment.face.z)),
-                high = inFace(segment, grid_->corner(segment.face.x + 1, segment.face.y + 1, segment.face.z + 1));
+    const FaceRectangle face(*grid_, segment.face, segment.axis);
+    const Vec3f low = inFace(segment, face.low), high = inFace(segment, face.high);
     double first = -std::numeric_limits<double>::infinity(), last = -first;
     for (const auto& [axis, step] : {std::pair(axes.u, way[0]), {axes.v, way[1]}}) {
         const double before = static_cast<double>(low[axis]) - static_cast<double>(piece.at[axis]),
@@ -343,12 +343,7 @@ bool FaceCreases::mayLieAt(const FaceSegment& segment, Vec3f p) const { return i
 
 /// The nearest point inside the segment's face.
 Vec3f FaceCreases::inFace(const FaceSegment& segment, Vec3f p) const {
-    const Vec3i at = segment.face;
-    const Vec3f low = grid_->corner(at.x, at.y, at.z), high = grid_->corner(at.x + 1, at.y + 1, at.z + 1);
-    for (const int axis : {FaceAxes(segment.axis).u, FaceAxes(segment.axis).v})
-        p[axis] = std::max(low[axis] + faceMargin * grid_->cell_m,
-                           std::min(high[axis] - faceMargin * grid_->cell_m, p[axis]));
-    return p;
+    return FaceRectangle(*grid_, segment.face, segment.axis).within(p, faceMargin * grid_->cell_m);
 }
 
 /// Pieces between breaks that coincide go; where a segment's way crosses itself, or another segment shares its face,
@@ -383,12 +378,14 @@ void FaceCreases::arrange(const FaceSegment& segment) {
     if (!segment.alone || (n > 1 && !isMonotone(segment, chain_) && !isZigzag(segment, chain_))) {
         for (size_t k = 0; k < n; ++k)
             chain_[k].at = between(a, b, static_cast<double>(k + 1) / static_cast<double>(n + 1));
-        return;
+    } else {
+        const float least = endMargin * grid_->cell_m;
+        for (Break& at : chain_)
+            if (std::min(length(at.at - a), length(at.at - b)) < least)
+                at.at = between(at.at, between(a, b, 0.5), 2 * endMargin);
     }
-    const float least = endMargin * grid_->cell_m;
-    for (Break& at : chain_)
-        if (std::min(length(at.at - a), length(at.at - b)) < least)
-            at.at = between(at.at, between(a, b, 0.5), 2 * endMargin);
+    const FaceRectangle face(*grid_, segment.face, segment.axis);
+    for (Break& at : chain_) at.at = face.offSides(at.at);
 }
 
 }  // namespace sgm::mesh
