@@ -11,6 +11,7 @@
 #include "grammar/lower/solids.h"
 #include "grammar/pipeline/buried.h"
 #include "grammar/pipeline/gaps.h"
+#include "modeler/mesh/region.h"
 
 namespace sgm::pipeline {
 namespace {
@@ -99,6 +100,15 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
         const auto extent_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
         return fmt::format("--resolution {}", static_cast<int>(std::ceil(extent_m / cell_m)));
     };
+    const Box3f& bounds = model.lowered->field.bounds;
+    const auto farthest_m = static_cast<double>(std::max(maxComponent(bounds.hi), -minComponent(bounds.lo)));
+    const double least_m = static_cast<double>(mesh::leastCellAt(1)) * farthest_m;
+    const auto whereNear = [&](double cell_m) -> std::string {
+        if (!(cell_m < least_m)) return {};
+        return fmt::format(
+            ", nearer to the origin than {:.0f} m: single precision can't hold such cells {:.0f} m from it",
+            withTwoDigits(cell_m / static_cast<double>(mesh::leastCellAt(1))), farthest_m);
+    };
     std::vector<MeshWarning> warnings;
     std::set<std::pair<std::string, uint32_t>> others;
     for (const auto& [place, line] : lines) {
@@ -119,10 +129,10 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
                                                    line.thickness_m, where, line.symbol);
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", file, number),
-             fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}", what,
+             fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}{}", what,
                          one ? "is" : "are", whose, grid.cell_m, one ? "s" : "",
-                         100 * line.missing / static_cast<double>(line.parts), remedy(line.cell_m),
-                         one ? "it" : "them"),
+                         100 * line.missing / static_cast<double>(line.parts), remedy(line.cell_m), one ? "it" : "them",
+                         whereNear(line.cell_m)),
              true});
     }
     size_t ornaments = 0;

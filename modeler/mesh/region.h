@@ -98,6 +98,9 @@ eval::RelevantRange relevantRangeFor(const eval::Tape& tape, const Grid& grid);
 /// less than `relevantRangeFor` tells apart of a field that isn't expensive.
 float surfaceReach(const eval::Tape& tape, const Grid& grid);
 
+/// Metres: the least cells that float32 can resolve so far from the origin, metres.
+constexpr float leastCellAt(float distance_m) { return distance_m * 0x1.0p-13f; }
+
 /// Error::Input for a box without end and for cells that float32 can't resolve or that aren't positive, Error::Budget
 /// for too many along an axis.
 Status checkGrid(const Grid& grid);

@@ -104,7 +104,7 @@ Status checkGrid(const Grid& grid) {
         const float last = grid.origin[axis] + grid.cell_m * static_cast<float>(grid.cells[axis]);
         const float farthest = std::max(std::abs(grid.origin[axis]), std::abs(last));
         // Vertices keep 1/1024 of a cell from its corners, which float32 has to be able to say.
-        if (const float least = farthest * 0x1.0p-13f; !(grid.cell_m >= least))
+        if (const float least = leastCellAt(farthest); !(grid.cell_m >= least))
             return Error{Error::Kind::Input,
                          fmt::format("cells of {:.3g} m are too small for single precision {:.4g} m from the origin: "
                                      "take cells of {:.2g} m or more, or move the model nearer to the origin",

@@ -114,6 +114,17 @@ std::vector<MeshWarning> expectHeld(const std::string& start, lower::ThinPart::K
     return missingWarnings(model, coarse.grid, missing);
 }
 
+TEST(Refining, WarnsWhereSinglePrecisionHasNoCellsThatHoldAPart) {
+    Context context{nullptr, 2};
+    const Model model = modelOf("grammar 2\nstart A -> cube size (8m, 8m, .1m) move (3000m, 0m, 0m)\n", context);
+    const MeshedModel made = meshed(model, 16, 3);
+    const auto warnings = missingWarnings(model, made.grid, missingParts(model, made));
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].text.find("nearer to the origin than 810 m: single precision can't hold such cells 3004 m"),
+              std::string::npos)
+        << warnings[0].text;
+}
+
 /// The bars of a window are what its lights leave: no part is thin.
 TEST(Refining, WallsThatCutsLeaveAreThere) {
     const auto warnings = expectHeld("start A -> cube size (8m, 8m, .6m) - Row size (6.03m, 6m, 200%)\n",
