@@ -350,6 +350,10 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();
     std::vector<ThinPart> found = lackedOf(thin);
+    std::erase_if(found, [&](const ThinPart& whole) {  // its walls are thinner
+        return std::any_of(walls->begin(), walls->end(),
+                           [&](const ThinPart& w) { return w.part == whole.part && w.isShell; });
+    });
     std::move(walls->begin(), walls->end(), std::back_inserter(found));
     for (const ThinSection& section : *sections)
         if (auto lacked = missingAt(section, presence, cell)) found.push_back(std::move(*lacked));

@@ -31,10 +31,10 @@ struct ThinPart {
 /// that stands free, and of a thin box's faces that are mostly free, does the mesh cover them? Likewise
 /// at thin walls and narrow gaps at the faces of boxes
 /// (`findThinSections`): those that lack more than a tenth; and at the walls of shells and beside other cuts
-/// (`findMissingWalls`). Ascending by part. What else is thin within a thicker scope, as a needle's point or a
-/// fractal's ornament, isn't looked for. Empty for a mesh without origins. Only those `among` others are looked at,
-/// where that isn't null. About 4,000 evaluations of a shortened tape a thin part, 300 to 30,000 another, O(n log n);
-/// `threads` 0: all. Error::Cancelled.
+/// (`findMissingWalls`); a part that lacks of both is there once, with its walls. Ascending by part. What else is thin
+/// within a thicker scope, as a needle's point or a fractal's ornament, isn't looked for. Empty for a mesh without
+/// origins. Only those `among` others are looked at, where that isn't null. About 4,000 evaluations of a shortened tape
+/// a thin part, 300 to 30,000 another, O(n log n); `threads` 0: all. Error::Cancelled.
 Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivation, const Model& model,
                                                const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m,
                                                int threads, Progress* progress,

@@ -25,6 +25,7 @@ constexpr double leastThin = 0.1;  ///< share of a shell's surface that is too t
 /// In cells, from the surface into the solid.
 constexpr std::array depths{0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75};
 
+constexpr double thinnerWall = 0.7;  ///< of the whole: so thin is a wall of a part that is thin as a whole
 constexpr double leaningWall = 1.42;  ///< times a cell: a thicker wall is held as a rule
 constexpr double beyondWall = 0.5;    ///< cells beyond both surfaces of a wall within which a mesh has it
 
@@ -186,10 +187,11 @@ std::vector<WalledPart> walledParts(const derive::Derivation& derivation, const 
         const derive::ShapeId id = model.shapeOf[part];
         if (id == derive::none || !isWanted[part]) continue;
         const derive::Shape& shape = derivation.tree.shapes[id];
-        // What is thin as a whole is looked for likewise, but otherwise (findMissingParts).
-        if (shape.solid == derive::none || cellThatHolds(shape.scope) < cell_m) continue;
+        if (shape.solid == derive::none) continue;
         const derive::SolidValue& solid = derivation.tree.solids[shape.solid];
         const double wall_m = wallOf(solid);
+        // What is thin as a whole is looked for likewise, but otherwise (findMissingParts): a parapet on it is thinner.
+        if (cellThatHolds(shape.scope) < cell_m && !(wall_m < thinnerWall * minComponent(shape.scope.size))) continue;
         const bool isShell = wall_m / leaningWall < cell_m;
         if (!isShell && (!cuts[id] || isBox(solid, shape.scope))) continue;
         walled.push_back({part, around(derive::liftedScope(derivation, id), solid), isShell ? wall_m : 0});

@@ -133,9 +133,9 @@ std::vector<Rim> rimsOf(const derive::Derivation& derivation, const Model& model
         if (shape.solid == derive::none || cellThatHolds(shape.scope) < cell_m) continue;
         const derive::SolidValue& solid = derivation.tree.solids[shape.solid];
         areBoxes[part] = isBox(solid, shape.scope);
-        if (!solid.primitive || solid.primitive->plan != field::PlanUse::None ||
-            (solid.primitive->hasFlatFaces && !areBoxes[part]))
-            continue;
+        if (!solid.primitive) continue;
+        const bool hasPlan = solid.primitive->plan != field::PlanUse::None;
+        if (solid.primitive->hasFlatFaces && !areBoxes[part] && !hasPlan) continue;
         isAsked[part] = anyAsked = true;
     }
     std::vector<Rim> rims;

@@ -114,6 +114,18 @@ std::vector<MeshWarning> expectHeld(const std::string& start, lower::ThinPart::K
     return missingWarnings(model, coarse.grid, missing);
 }
 
+/// The roof as a whole is thinner than a cell, and halved cells hold that, but not yet its parapet.
+TEST(Refining, AParapetOnARoofThatIsThinAsAWholeIsThere) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\nstart A -> footprint rect(16, 9) extrude 4m House\nrule House -> cube + flatRoof(.3m, .8m, .25m) "
+        "at +y\n",
+        context);
+    const MeshedModel fine = meshed(model, 12, 3);
+    EXPECT_TRUE(fine.missing->empty());
+    EXPECT_NEAR(mesh::measure(fine.mesh).volume_m3, 16 * 9 * 4.3 + (16 * 9 - 15.5 * 8.5) * .8, .3);
+}
+
 TEST(Refining, WarnsWhereSinglePrecisionHasNoCellsThatHoldAPart) {
     Context context{nullptr, 2};
     const Model model = modelOf("grammar 2\nstart A -> cube size (8m, 8m, .1m) move (3000m, 0m, 0m)\n", context);
