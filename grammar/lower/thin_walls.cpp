@@ -25,7 +25,7 @@ constexpr double leastThin = 0.1;  ///< share of a shell's surface that is too t
 /// In cells, from the surface into the solid.
 constexpr std::array depths{0.03, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75};
 
-constexpr double thinnerWall = 0.7;  ///< of the whole: so thin is a wall of a part that is thin as a whole
+constexpr double thinnerWall = 0.7;   ///< of the whole: so thin is a wall of a part that is thin as a whole
 constexpr double leaningWall = 1.42;  ///< times a cell: a thicker wall is held as a rule
 constexpr double beyondWall = 0.5;    ///< cells beyond both surfaces of a wall within which a mesh has it
 

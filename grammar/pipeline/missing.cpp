@@ -75,6 +75,20 @@ std::map<std::pair<std::string, uint32_t>, Ornament> fineOrnaments(const derive:
     return lines;
 }
 
+/// "a 'cube' of 0.05 m", "gaps of 0.1 m at 3 faces of 'cube'".
+std::string nameOf(const Line& line, lower::ThinPart::Kind kind) {
+    const bool one = line.parts == 1;
+    const std::string count = one ? "a" : std::to_string(line.parts);
+    if (kind == lower::ThinPart::Kind::Part)
+        return fmt::format("{} '{}' of {:.3g} m", count, line.symbol, line.thickness_m);
+    const std::string where = line.atFaces ? fmt::format("at {} face{} of", count, one ? "" : "s")
+                              : one        ? "beside"
+                                           : "beside " + count;
+    return fmt::format("{}{}{} of {:.3g} m {} '{}'", one ? "a " : "",
+                       kind == lower::ThinPart::Kind::Wall ? "wall" : "gap", one ? "" : "s", line.thickness_m, where,
+                       line.symbol);
+}
+
 /// The largest number of two digits that is no larger.
 double withTwoDigits(double value) {
     const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -118,19 +132,10 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
             continue;
         }
         const bool one = line.parts == 1;
-        const std::string count = one ? "a" : std::to_string(line.parts);
-        const std::string where = line.atFaces ? fmt::format("at {} face{} of", count, one ? "" : "s")
-                                  : one        ? "beside"
-                                               : "beside " + count;
-        const std::string what = kind == lower::ThinPart::Kind::Part
-                                     ? fmt::format("{} '{}' of {:.3g} m", count, line.symbol, line.thickness_m)
-                                     : fmt::format("{}{}{} of {:.3g} m {} '{}'", one ? "a " : "",
-                                                   kind == lower::ThinPart::Kind::Wall ? "wall" : "gap", one ? "" : "s",
-                                                   line.thickness_m, where, line.symbol);
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", file, number),
-             fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}{}", what,
-                         one ? "is" : "are", whose, grid.cell_m, one ? "s" : "",
+             fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}{}",
+                         nameOf(line, kind), one ? "is" : "are", whose, grid.cell_m, one ? "s" : "",
                          100 * line.missing / static_cast<double>(line.parts), remedy(line.cell_m), one ? "it" : "them",
                          whereNear(line.cell_m)),
              true});
