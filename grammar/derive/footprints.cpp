@@ -40,6 +40,7 @@ size_t Footprints::append(const Footprints& other) {
     const size_t first = shapes_.size();
     shapes_.insert(shapes_.end(), other.shapes_.begin(), other.shapes_.end());
     for (const auto& [hash, index] : other.byHash_) byHash_.emplace(hash, static_cast<uint32_t>(first + index));
+    for (const auto& [size, depth_m] : other.depths_) depths_.insert({{first + size[0], size[1], size[2]}, depth_m});
     return first;
 }
 

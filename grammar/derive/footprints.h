@@ -3,11 +3,15 @@
 // outlives the scopes.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
+#include "modeler/core/random.h"
 #include "modeler/core/result.h"
 #include "modeler/core/vec.h"
 #include "modeler/plan/formula.h"
@@ -31,10 +35,26 @@ public:
     const PlanShape& operator[](uint32_t index) const { return *shapes_[index]; }
     /// The footprint in metres about the centre of a scope of that half-size.
     plan::Footprint inMetres(uint32_t index, Vec3d half) const;
+    /// Keeps the depth of that footprint in metres (field::PlanNumbers::depth), for who asks for it again.
+    void noteDepth(uint32_t index, Vec3d half, double depth_m) { depths_[sizeOf(index, half)] = depth_m; }
+    std::optional<double> knownDepth(uint32_t index, Vec3d half) const {
+        const auto known = depths_.find(sizeOf(index, half));
+        return known == depths_.end() ? std::nullopt : std::optional(known->second);
+    }
 
 private:
+    /// A footprint's number and the bits of a half-size along x and z.
+    using Size = std::array<uint64_t, 3>;
+    static Size sizeOf(uint32_t index, Vec3d half) {
+        return {index, std::bit_cast<uint64_t>(half.x), std::bit_cast<uint64_t>(half.z)};
+    }
+    struct SizeHash {
+        size_t operator()(const Size& s) const { return combine(combine(s[0], s[1]), s[2]); }
+    };
+
     std::vector<std::shared_ptr<const PlanShape>> shapes_;
     std::unordered_multimap<uint64_t, uint32_t> byHash_;
+    std::unordered_map<Size, double, SizeHash> depths_;
 };
 
 }  // namespace sgm::derive

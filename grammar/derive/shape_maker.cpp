@@ -187,9 +187,19 @@ void ShapeMaker::standAsHigh(const Element& e, const Place& place, EvaluatedAttr
     }
     const AttributeContext context{place, out};
     const plan::Footprint footprint = context.footprint();
-    const auto formula = plan::monotoneFormula(footprint);
-    if (!formula.ok()) return context.fail(formula.error().message, e.span);
-    const double height_m = std::max(1e-3, field::heightOver(*value.primitive, footprint, *formula, arguments));
+    Footprints& footprints = builder_.tree().footprints;
+    const uint32_t index = out.scope.footprint;
+    plan::Formula rectangle;
+    if (index == none) {
+        auto formula = plan::monotoneFormula(footprint);
+        if (!formula.ok()) return context.fail(formula.error().message, e.span);
+        rectangle = std::move(*formula);
+    }
+    const auto numbers =
+        std::make_shared<const field::PlanNumbers>(footprint, index == none ? rectangle : footprints[index].formula);
+    const double height_m = std::max(1e-3, field::heightOver(*value.primitive, numbers, arguments));
+    // Lowering asks for the same depth.
+    if (numbers->knownDepth() && index != none) footprints.noteDepth(index, out.scope.half(), *numbers->knownDepth());
     if (e.op == rules::Operator::None) out.moved_m += out.scope.axes.y * ((height_m - out.scope.size.y) / 2);
     out.scope.size.y = height_m;
 }

@@ -123,6 +123,10 @@ public:
         return {r.centre, axes_[r.axes], r.size, r.footprint};
     }
     const Mat3& axesOf(ShapeId id) const { return axes_[records_[id].axes]; }
+    bool haveSameAxes(ShapeId a, ShapeId b) const {
+        const uint32_t of = records_[a].axes, other = records_[b].axes;
+        return of == other || axes_[of] == axes_[other];
+    }
     const ShapeRecord& record(ShapeId id) const { return records_[id]; }
     /// To be changed in place: links, flags and indices of lists of the tree.
     ShapeRecord& record(ShapeId id) { return records_[id]; }

@@ -104,7 +104,9 @@ private:
 /// A solid whose field is a convex function, by planes that touch it.
 ConvexPart touching(const SolidValue& solid, const Scope& scope, std::span<const field::SampledGridPtr> meshes) {
     field::Graph graph;
-    const field::Field f = lowerSolid(graph, solid, scope, 1, 1, {}, meshes);
+    const derive::Footprints none;
+    SharedPlans plans(none);
+    const field::Field f = lowerSolid(graph, solid, scope, 1, 1, plans, meshes);
     const eval::Tape tape = eval::compile(graph, f, graph.constants());
     ConvexPart part = SurfaceProbe(tape, scope).tangents();
     if (part.empty()) return {};

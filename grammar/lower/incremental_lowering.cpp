@@ -66,6 +66,7 @@ bool Lowering::replay(std::span<const ShapeId> changed) {
     if (std::any_of(tree_.extras.begin(), tree_.extras.end(), [](const derive::Extras& x) { return !x.clad.empty(); }))
         return false;
     again_ = true;
+    plans_.clear();
     for (ShapeId id = 0; id < tree_.shapes.size(); ++id) noteTurn(id);
     open_.clear();
     const size_t nodes = model_.graph.nodeCount(), parts = model_.provenance.parts.size();
@@ -97,7 +98,7 @@ Status IncrementalLowering::startOver(const derive::Derivation& derivation, Prog
     whole_ = true;
     lowering_.reset();
     model_ = std::make_unique<Model>();
-    auto lowering = std::make_unique<Lowering>(derivation, *model_, true);
+    auto lowering = std::make_unique<Lowering>(derivation, *model_, Lowering::Options{.keeps = true, .threads = 0});
     const Status done = lowering->run(progress);
     if (done.ok()) lowering_ = std::move(lowering);
     return done;

@@ -18,13 +18,14 @@ namespace sgm::lower {
 
 void Lowering::noteTurn(ShapeId id) {
     const Shape& s = tree_.shapes[id];
-    const bool turned = s.parent == none || tree_.shapes[s.parent].scope.axes != s.scope.axes;
+    const bool turned = s.parent == none || !tree_.shapes.haveSameAxes(id, s.parent);
     turnedAt_[id] = turned ? id : turnedAt_[s.parent];
 }
 
 /// What hangs on a shape and its parent alone, in one pass: the shapes of a large tree are far more than the caches
 /// hold. Returns how many have a solid of their own.
 size_t Lowering::surveyShapes() {
+    std::vector<PlacedPlan> plans;
     plain_.assign(tree_.shapes.size(), true);
     turnedAt_.resize(tree_.shapes.size());
     auto paths = std::make_shared<ShapePaths>(tree_);
@@ -37,7 +38,10 @@ size_t Lowering::surveyShapes() {
         if (s.parent != none && !isSum(s)) plain_[s.parent] = false;
         noteTurn(id);
         solids += s.solid != none;
+        if (s.solid == none || s.scope.footprint == none || options_.threads == 1) continue;
+        if (const auto plan = planUnder(tree_.solids[s.solid], s.scope)) plans.push_back(*plan);
     }
+    plans_.prepare(plans, options_.threads);
     texts_.take(std::move(paths));
     return solids;
 }
@@ -59,19 +63,22 @@ bool hasFlatFaces(const derive::SolidValue& solid) {
 
 /// Who owns surface: the part is made when it is first asked for.
 OriginId Lowering::ownerOf(ShapeId id) {
-    if (owners_[id] != 0) return owners_[id];
+    if (owners_[id] == 0) addPart(id);
+    return owners_[id];
+}
+
+void Lowering::addPart(ShapeId id) {
     owners_[id] = static_cast<OriginId>(model_.provenance.parts.size());
     const Shape& s = tree_.shapes[id];
-    Part part;
+    Part& part = model_.provenance.parts.emplace_back();
     part.path = texts_.pathOf(id);
     part.madeBy = texts_.madeBy(s);
     part.material = materials_.of(id);
-    part.pose = {derive::liftedScope(d_, id).centre, s.scope.axes};
+    part.pose = {s.scope.centre, s.scope.axes};
+    if (!d_.reliefs.empty()) part.pose.origin = derive::liftedScope(d_, id).centre;
     const derive::SolidValue* solid = tree_.solidOf(id);
     part.hasFlatFaces = solid && hasFlatFaces(*solid);
-    model_.provenance.parts.push_back(std::move(part));
     model_.shapeOf.push_back(id);
-    return owners_[id];
 }
 
 Owned Lowering::take(Content& content) {
@@ -113,7 +120,7 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
     if (isSum(s)) {
         if (content.blend_m > 0 || !content.cuts.terms.empty()) flush(content);
         content.terms.push_back(part);
-        if (keeps_) content.from.push_back(id);
+        if (options_.keeps) content.from.push_back(id);
         return;
     }
     if (s.op == Operator::Sum || s.op == Operator::None) {
@@ -151,100 +158,54 @@ void Lowering::join(Content& content, ShapeId id, Owned part) {
     }
 }
 
-/// A cladding holds its content twice, so that cladding in cladding grows with 2 to the power of its depth. A few
-/// levels are fine, and one level however large its content is.
-bool Lowering::cladsTooMuch() const {
-    constexpr size_t always = 100'000, share = 3;
-    return cladNodes_ > always + share * (model_.graph.nodeCount() - cladNodes_);
-}
-
-/// Cladding is a part of its own, named after its terminal.
-Owned Lowering::applyCladding(Owned part, ShapeId id) {
-    const auto* x = tree_.extrasOf(id);
-    if (!x || x->clad.empty() || part.field.bounds.empty()) return part;
-    const derive::Cladding& clad = x->clad[0];
-    OriginId ornament = ownerOf(id);
-    if (!clad.name.empty()) {
-        Part own = model_.provenance.parts[ornament];
-        own.path = own.path.text() + "/" + clad.name;
-        PartSource source = own.source();
-        source.symbol = clad.name;
-        own.madeBy = std::make_shared<const PartSource>(std::move(source));
-        if (clad.material != none) own.material = clad.material;
-        ornament = static_cast<OriginId>(model_.provenance.parts.size());
-        model_.provenance.parts.push_back(std::move(own));
-        model_.shapeOf.push_back(id);
-    }
-    if (refused_ != none || cladsTooMuch()) {
-        if (refused_ == none) refused_ = id;
-        return part;
-    }
-    const derive::Scope box = tree_.contentBox(id);
-    const size_t before = model_.graph.nodeCount();
-    const Owned whole{lowerClad(model_.graph, {part.field, part.origin, ornament}, clad.ornament, box,
-                                combine(tree_.shapes[id].key, hashText("clad"))),
-                      0};
-    cladNodes_ += model_.graph.nodeCount() - before;
-    return whole;
-}
-
-Owned Lowering::displaced(Owned part, ShapeId id) {
-    const auto* x = tree_.extrasOf(id);
-    if (!x || x->displace.empty() || part.field.bounds.empty()) return part;
-    const Shape& s = tree_.shapes[id];
-    const bool isBounded = part.field.bounds.finite();
-    for (size_t i = 0; i < x->displace.size(); ++i) {
-        const derive::Displacement& n = x->displace[i];
-        const uint64_t key = combine(s.key, i), pattern = n.key == 0 ? key : combine(n.key, i);
-        const field::Point position =
-            n.key == 0 ? model_.graph.position()
-                       : field::toLocal(model_.graph.position(), {n.frame.origin, n.frame.axes},
-                                        combine(key, hashText("displace.frame")), tree_.shapes[turnedAt_[id]].key);
-        part.field = field::displace(
-            part.field, position, n.fbm ? field::Noise::Fbm : field::Noise::Billow,
-            model_.graph.slot({key, hashText("displace.amplitude")}, static_cast<float>(n.amplitude_m)), n.amplitude_m,
-            model_.graph.slot({key, hashText("displace.frequency")}, static_cast<float>(n.frequency)), n.frequency,
-            n.octaves, static_cast<uint32_t>(pattern >> 32));
-    }
-    if (isBounded && !part.field.bounds.finite() && boundless_ == none) boundless_ = id;
-    return part;
-}
-
-/// Laid over the heights of its relief.
-Owned Lowering::draped(Owned part, ShapeId id) {
-    const auto* x = tree_.extrasOf(id);
-    if (!x || x->relief == none) return part;
-    const derive::Relief& relief = d_.reliefs[x->relief];
-    if (relief.heights)
-        part.field = field::drape(part.field, relief.heights, {relief.frame.origin, relief.frame.axes},
-                                  combine(combine(tree_.shapes[0].key, x->relief), hashText("relief")));
-    return part;
-}
-
 /// The shape's own solid.
 Owned Lowering::solidOf(ShapeId id) {
     const Shape& s = tree_.shapes[id];
-    return {lowerSolid(model_.graph, *tree_.solidOf(id), s.scope, s.key, tree_.shapes[turnedAt_[id]].key,
-                       tree_.footprints, d_.grammar->meshes),
+    if (!again_) model_.graph.beginPath(s.key);
+    return {lowerSolid(model_.graph, *tree_.solidOf(id), s.scope, s.key, tree_.shapes[turnedAt_[id]].key, plans_,
+                       d_.grammar->meshes),
             ownerOf(id)};
+}
+
+/// Makes the boxes that wait: before anything else comes into the graph, or their terms are asked for.
+void Lowering::placeBoxes() {
+    if (row_.empty()) return;
+    PageVector<Owned>& terms = open_.back().terms;
+    if (terms.empty() && open_.back().shape == 0) terms.reserve(model_.shapeOf.capacity());
+    row_.place(terms, static_cast<OriginId>(model_.provenance.parts.size()), [this] {
+        for (const ShapeId id : row_.shapes()) addPart(id);
+    });
 }
 
 void Lowering::enter(ShapeId id) {
     if (!again_) materials_.enter(id);
-    if (!flattensIntoParent(id)) open_.push_back({{}, id, {}, {}});
-    if (tree_.shapes[id].solid == none) return;
-    const Owned part = solidOf(id);
+    if (!flattensIntoParent(id)) {
+        placeBoxes();
+        open_.push_back({{}, id, {}, {}});
+    }
+    const derive::SolidValue* const solid = tree_.solidOf(id);
+    if (!solid) return;
     Content& content = open_.back();
-    if (content.blend_m > 0 || !content.cuts.terms.empty()) flush(content);
-    content.terms.push_back(part);
-    if (keeps_) content.from.push_back(id);
+    // A shape that is turned itself has its rotation's slots under its own key: a row has none but the boxes' there.
+    const bool isBox = !again_ && turnedAt_[id] != id && BoxRow::takes(*solid);
+    if (!isBox || !row_.hasPlaceFor(turnedAt_[id])) placeBoxes();
+    if (isBox) {
+        if (content.blend_m > 0 || !content.cuts.terms.empty()) flush(content);
+        row_.add(id, turnedAt_[id]);
+    } else {
+        const Owned part = solidOf(id);
+        if (content.blend_m > 0 || !content.cuts.terms.empty()) flush(content);
+        content.terms.push_back(part);
+    }
+    if (options_.keeps) content.from.push_back(id);
 }
 
 void Lowering::leave(ShapeId id) {
     if (flattensIntoParent(id)) return;
+    placeBoxes();
     Owned part = draped(displaced(applyCladding(whole(open_.back(), id), id), id), id);
     open_.pop_back();
-    if (keeps_) kept_.parts[id] = part;
+    if (options_.keeps) kept_.parts[id] = part;
     if (id == 0)
         model_.field = field::sum(model_.graph, std::span(&part, 1));  // one part alone keeps its owner
     else if (!open_.empty())
@@ -254,7 +215,7 @@ void Lowering::leave(ShapeId id) {
 /// All that the node holds; a large plain sum is kept.
 Owned Lowering::whole(Content& content, ShapeId id) {
     constexpr size_t many = 16;
-    if (!keeps_ || !plain_[id] || content.terms.size() < many) return take(content);
+    if (!options_.keeps || !plain_[id] || content.terms.size() < many) return take(content);
     for (uint32_t i = 0; i < content.from.size(); ++i) kept_.termOf[content.from[i]] = i;
     const field::Field sum = field::sum(model_.graph, content.terms);
     kept_.sums[id] = {std::move(content.terms), sum.value};
@@ -297,7 +258,7 @@ Status Lowering::run(Progress* progress) {
     model_.graph.reserveBoxes(solids);
     model_.provenance.parts.reserve(solids + 1);
     model_.shapeOf.reserve(solids + 1);
-    if (keeps_) {
+    if (options_.keeps) {
         kept_.parts.resize(tree_.shapes.size());
         kept_.termOf.resize(tree_.shapes.size(), none);
         for (const Shape& s : tree_.shapes) kept_.joins.push_back(isSum(s));
@@ -305,16 +266,17 @@ Status Lowering::run(Progress* progress) {
     if (progress) progress->begin("lower", tree_.shapes.size());
     model_.shapeOf.push_back(none);
     if (const Status done = walk(0, progress); !done.ok()) return done;
-    if (refused_ != none)
+    plans_.clear();
+    if (noted_.refused != none)
         return Error{Error::Kind::Budget,
                      fmt::format("{}'{}' is cladding in cladding in cladding: each level doubles the work; clad the "
                                  "parts, or fewer levels",
-                                 syntax::placeText(tree_.shapes[refused_].span), tree_.path(refused_))};
-    if (boundless_ != none)
+                                 syntax::placeText(tree_.shapes[noted_.refused].span), tree_.path(noted_.refused))};
+    if (noted_.boundless != none)
         return Error{Error::Kind::Input,
                      fmt::format("{}'{}': so much noise lies on noise that nobody can tell how far it reaches; "
                                  "displace less often, or by less",
-                                 syntax::placeText(tree_.shapes[boundless_].span), tree_.path(boundless_))};
+                                 syntax::placeText(tree_.shapes[noted_.boundless].span), tree_.path(noted_.boundless))};
     nameTheWhole();
     mergeMaterials();
     layTextures(d_, model_);
@@ -381,9 +343,9 @@ void Lowering::mergeMaterials() {
     for (Part& part : model_.provenance.parts) part.material = numbers[part.material];
 }
 
-Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress) {
+Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress, int threads) {
     auto model = std::make_unique<Model>();
-    Lowering lowering(derivation, *model, false);
+    Lowering lowering(derivation, *model, {.keeps = false, .threads = threads});
     if (const Status done = lowering.run(progress); !done.ok()) return done.error();
     return model;
 }

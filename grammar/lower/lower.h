@@ -23,6 +23,7 @@ void layTextures(const derive::Derivation& derivation, Model& model);
 
 /// Fails when the solid is unbounded, or when nothing solid is left of a derivation that holds no objects of their own:
 /// they aren't part of the field (derive::graft makes them so).
-Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress);
+/// On `threads` threads, 0 for all that the machine has, of which nothing shows in the model.
+Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress, int threads = 0);
 
 }  // namespace sgm::lower

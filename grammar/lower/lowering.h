@@ -6,9 +6,11 @@
 #include <set>
 #include <unordered_map>
 
+#include "grammar/lower/box_row.h"
 #include "grammar/lower/lower.h"
 #include "grammar/lower/materials.h"
 #include "grammar/lower/part_texts.h"
+#include "grammar/lower/shared_plans.h"
 #include "modeler/field/combine.h"
 
 namespace sgm::lower {
@@ -45,15 +47,20 @@ struct Content : Parts {
 /// terms into its parent's, so that thousands of parts meet in one n-ary sum.
 class Lowering {
 public:
-    /// With `keeps`, `replay` may follow.
-    Lowering(const derive::Derivation& d, Model& model, bool keeps)
+    struct Options {
+        bool keeps = false;  ///< `replay` may follow
+        int threads = 1;     ///< 0: all that the machine has
+    };
+    Lowering(const derive::Derivation& d, Model& model, Options options)
         : d_(d),
           tree_(d.tree),
           model_(model),
           materials_(d),
           texts_(d),
           owners_(d.tree.shapes.size(), 0),
-          keeps_(keeps) {}
+          row_(d, model.graph, options.threads),
+          plans_(d.tree.footprints),
+          options_(options) {}
 
     Status run(Progress* progress);
     /// After `run`, when the derivation changed in place: the parts that hold one of these shapes, again. False where
@@ -71,7 +78,7 @@ private:
     void poseTheWhole();
     void mergeMaterials();
 
-    // incremental_lowering.cpp
+    // incremental_lowering.cpp; dressing.cpp has what dresses a whole content
     using Dirty = std::set<ShapeId, std::greater<>>;
     ShapeId partOf(ShapeId id) const;
     bool changeTerm(ShapeId part, ShapeId from, const Owned& to);
@@ -84,8 +91,9 @@ private:
     Owned takeParts(Parts& parts);
     void flush(Content& content);
     OriginId ownerOf(ShapeId id);
+    void addPart(ShapeId id);
+    void placeBoxes();
     Owned applyCladding(Owned part, ShapeId id);
-    bool cladsTooMuch() const;
     Owned displaced(Owned part, ShapeId id);
     Owned draped(Owned part, ShapeId id);
     bool flattensIntoParent(ShapeId id) const;
@@ -100,9 +108,13 @@ private:
     std::vector<bool> plain_;       ///< by shape: its content is nothing but a sum
     PartTexts texts_;
     PageVector<OriginId> owners_;  ///< by shape; 0: not asked for
-    size_t cladNodes_ = 0;         ///< of the graph, made for cladding
-    ShapeId refused_ = none;       ///< the first shape whose cladding was one too much
-    ShapeId boundless_ = none;     ///< the first shape whose noise left no bounds
+    BoxRow row_;                   ///< boxes of the innermost open node that have yet to be made
+    SharedPlans plans_;
+    struct Noted {
+        size_t cladNodes = 0;      ///< of the graph, made for cladding
+        ShapeId refused = none;    ///< the first shape whose cladding was one too much
+        ShapeId boundless = none;  ///< the first shape whose noise left no bounds
+    } noted_;
 
     /// What a second run begins with.
     struct Kept {
@@ -111,7 +123,7 @@ private:
         std::unordered_map<ShapeId, KeptSum> sums;  ///< by the shape whose content it is
         std::vector<uint32_t> termOf;               ///< by shape: its place among the terms of a kept sum, or none
     };
-    const bool keeps_;
+    const Options options_;
     bool again_ = false;  ///< parts below the top of a walk are known
     Kept kept_;
 };

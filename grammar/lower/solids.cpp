@@ -9,6 +9,7 @@
 #include "modeler/field/domain.h"
 #include "modeler/field/plan_field.h"
 #include "modeler/field/primitives.h"
+#include "modeler/field/solids.h"
 
 namespace sgm::lower {
 namespace {
@@ -101,9 +102,9 @@ Field build(Graph& graph, const SolidValue& solid, const Frame& frame, uint64_t 
     return field::nothing(graph);
 }
 
-bool standsOverPlan(const SolidValue& solid) {
-    return (solid.primitive && solid.primitive->plan != field::PlanUse::None) ||
-           std::any_of(solid.parts.begin(), solid.parts.end(), standsOverPlan);
+bool uses(const SolidValue& solid, bool (*isUse)(field::PlanUse)) {
+    return (solid.primitive && isUse(solid.primitive->plan)) ||
+           std::any_of(solid.parts.begin(), solid.parts.end(), [&](const SolidValue& p) { return uses(p, isUse); });
 }
 
 Frame frameOf(Graph& graph, const derive::Scope& scope, uint64_t key, uint64_t rotationKey,
@@ -117,12 +118,45 @@ Frame frameOf(Graph& graph, const derive::Scope& scope, uint64_t key, uint64_t r
 
 }  // namespace
 
+namespace {
+
+/// A box of its own; Graph::addBoxes makes many.
+Field lowerBox(Graph& graph, const derive::Scope& scope, uint64_t key, uint64_t rotationKey) {
+    const field::Point p = field::turned(graph.position(), scope.axes, rotationKey);
+    const auto n = graph.slots(key, Graph::boxAttributes, boxNumbers(scope));
+    return boxField(field::solids::boxDistance(p, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}), scope);
+}
+
+}  // namespace
+
+bool isScopesBox(const SolidValue& solid) {
+    static const field::Primitive* const cube = field::findPrimitive("cube");
+    return solid.primitive == cube && solid.kind == rules::Solid::Kind::Primitive;
+}
+
+std::array<float, 6> boxNumbers(const derive::Scope& scope) {
+    const Vec3f c = (scope.axes.transposed() * scope.centre).as<float>(), h = scope.half().as<float>();
+    return {c.x, c.y, c.z, h.x, h.y, h.z};
+}
+
+Field boxField(field::NodeRef value, const derive::Scope& scope) {
+    const Vec3f half = scope.half().as<float>();
+    return {value, field::toWorld({-half, half}, {scope.centre, scope.axes}), 1, field::solids::growth(1)};
+}
+
+std::optional<PlacedPlan> planUnder(const SolidValue& solid, const derive::Scope& scope) {
+    using field::PlanUse;
+    if (scope.footprint == derive::none || !uses(solid, [](PlanUse use) { return use != PlanUse::None; })) return {};
+    return PlacedPlan{scope.footprint, scope.half(),
+                      uses(solid, [](PlanUse use) { return use == PlanUse::OwnHeight; })};
+}
+
 Field lowerSolid(Graph& graph, const SolidValue& solid, const derive::Scope& scope, uint64_t key, uint64_t rotationKey,
-                 const derive::Footprints& footprints, std::span<const field::SampledGridPtr> meshes) {
+                 SharedPlans& plans, std::span<const field::SampledGridPtr> meshes) {
+    if (isScopesBox(solid)) return lowerBox(graph, scope, key, rotationKey);
     Frame frame = frameOf(graph, scope, key, rotationKey, meshes);
-    if (scope.footprint == derive::none || !standsOverPlan(solid)) return build(graph, solid, frame, key);
-    const plan::Footprint footprint = footprints.inMetres(scope.footprint, scope.half());
-    const field::PlanField plan(footprint, footprints[scope.footprint].formula, frame.p,
+    if (!planUnder(solid, scope)) return build(graph, solid, frame, key);
+    const field::PlanField plan(plans.numbersOf(scope.footprint, scope.half()), frame.p,
                                 combine(key, hashText("plan")));
     frame.plan = &plan;
     return build(graph, solid, frame, key);

@@ -112,7 +112,7 @@ Result<Model> makeModel(derive::Derivation derivation, Context& context, Objects
                         const derive::Budget& budget) {
     if (objects != Objects::Apart)
         if (const Status s = graftObjects(derivation, objects, budget, context); !s.ok()) return s.error();
-    auto lowered = context.timed("lower", [&] { return lower::lower(derivation, context.progress); });
+    auto lowered = context.timed("lower", [&] { return lower::lower(derivation, context.progress, context.threads); });
     if (!lowered.ok()) return lowered.error();
     const lower::Model& model = **lowered;
     eval::Tape tape =

@@ -54,7 +54,7 @@ Result<Section> parseSection(const std::string& text) {
 
 Result<Model> makeModel(derive::Derivation derivation, const Section& section, Context& context) {
     if (const Status s = graftObjects(derivation, Objects::Grafted, {}, context); !s.ok()) return s.error();
-    auto lowered = context.timed("lower", [&] { return lower::lower(derivation, context.progress); });
+    auto lowered = context.timed("lower", [&] { return lower::lower(derivation, context.progress, context.threads); });
     if (!lowered.ok()) return lowered.error();
     lower::Model& model = **lowered;
     const Box3f whole = model.field.bounds;

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <type_traits>
 #include <vector>
 
@@ -39,6 +40,28 @@ struct PageAllocator {
     friend bool operator==(PageAllocator, PageAllocator) { return true; }
 };
 
+/// The same for vectors of which most are small and some are large: only these lie in huge pages.
+template <class T>
+struct LargePageAllocator : PageAllocator<T> {
+    using value_type = T;
+    LargePageAllocator() = default;
+    template <class U>
+    LargePageAllocator(const LargePageAllocator<U>&) {}
+    T* allocate(size_t n) {
+        return isLarge(n) ? PageAllocator<T>::allocate(n) : static_cast<T*>(::operator new(n * sizeof(T)));
+    }
+    void deallocate(T* p, size_t n) noexcept {
+        if (isLarge(n))
+            PageAllocator<T>::deallocate(p, n);
+        else
+            ::operator delete(p, n * sizeof(T));
+    }
+
+private:
+    static constexpr size_t leastBytes = 1 << 20;
+    static bool isLarge(size_t n) { return n * sizeof(T) >= leastBytes; }
+};
+
 /// For std::vector of many elements that aren't plain: they are made and ended as in any vector.
 template <class T>
 struct ObjectPageAllocator {
@@ -54,5 +77,9 @@ struct ObjectPageAllocator {
 /// A vector for what is large and plain; elements added by `resize(n)` hold anything until they are written.
 template <class T>
 using PageVector = std::vector<T, PageAllocator<T>>;
+
+/// The same where only large ones are worth pages of their own.
+template <class T>
+using LargePageVector = std::vector<T, LargePageAllocator<T>>;
 
 }  // namespace sgm

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modeler/core/parallel.h"
 #include "modeler/core/random.h"
 
 namespace sgm::eval {
@@ -32,11 +33,19 @@ float foldedValue(const Graph& graph, const Node& n, std::span<const float> args
 }  // namespace
 
 Tape Compiler::run(const field::Field& field) {
-    reach();
-    for (NodeId id = 0; id <= root_; ++id)
-        if (nodeClasses_[id].kind != NodeClass::Unreached) decide(id);
-    order();
-    namePieces();
+    // What tells values apart hangs on the graph, what orders them on numbers: two threads can share the passes.
+    constexpr NodeId many = 1 << 14;
+    const auto beside = [&](auto one, auto other) {
+        parallelFor(2, root_ >= many ? threads_ : 1, nullptr, [&](size_t task, int) { task == 0 ? one() : other(); });
+    };
+    beside(
+        [this] {
+            reach();
+            for (NodeId id = 0; id <= root_; ++id)
+                if (nodeClasses_[id].kind != NodeClass::Unreached) decide(id);
+        },
+        [this] { hashNodes(); });
+    beside([this] { order(); }, [this] { namePieces(); });
     return write(scaleOf(field));
 }
 
@@ -55,7 +64,7 @@ float Compiler::number(NodeId id) {
     if (n.op == codeOf<ops::Literal>) return std::bit_cast<float>(n.data);
     if (n.op == codeOf<ops::Slot>) return slots_[n.data];
     args_.clear();
-    for (const field::Operand& o : graph_.operands(id)) args_.push_back(fateOf(o.node).value);
+    for (const field::Operand& o : graph_.operands(id)) args_.push_back(fateOf(o.node).value());
     return foldedValue(graph_, n, args_);
 }
 
@@ -66,7 +75,7 @@ std::optional<NodeId> Compiler::passesOn(NodeId id) const {
     if ((a.kind == NodeClass::Constant) == (b.kind == NodeClass::Constant)) return {};
     const bool second = b.kind == NodeClass::Constant;
     const field::OpCode op = graph_.node(id).op;
-    if (!(second || field::traits(op).commutative) || !field::keepsFirst(op, second ? b.value : a.value)) return {};
+    if (!(second || field::traits(op).commutative) || !field::keepsFirst(op, second ? b.value() : a.value())) return {};
     return standIn(operands[second ? 0 : 1].node);
 }
 
@@ -76,34 +85,37 @@ void Compiler::decide(NodeId id) {
     if (isInput(id)) return;
     const auto isNumber = [&](const field::Operand& o) { return fateOf(o.node).kind == NodeClass::Constant; };
     if (std::all_of(operands.begin(), operands.end(), isNumber))
-        nodeClass = {NodeClass::Constant, 0, number(id), 0};
+        nodeClass = {NodeClass::Constant, 0, std::bit_cast<uint32_t>(number(id))};
     else if (const auto same = passesOn(id))
-        nodeClass = {NodeClass::Same, *same, 0, 0};
+        nodeClass = {NodeClass::Same, 0, *same};
     else
         nodeClass.need = need(byRegisterNeed(id));
 }
 
 /// Operands that are instructions, those that need most registers first: the order that keeps fewest of them busy.
 std::span<const NodeId> Compiler::byRegisterNeed(NodeId id) {
-    sorted_.clear();
-    for (const field::Operand& o : graph_.operands(id))
-        if (fateOf(o.node).kind == NodeClass::Instruction && !isInput(standIn(o.node)))
-            sorted_.push_back(standIn(o.node));
+    const auto operands = graph_.operands(id);
+    if (sorted_.size() < operands.size()) sorted_.resize(operands.size());
+    NodeId *const begin = sorted_.data(), *end = begin;
+    for (const field::Operand& o : operands) {
+        const NodeId at = standIn(o.node);
+        const NodeClass& nodeClass = nodeClasses_[at];
+        if (nodeClass.kind == NodeClass::Instruction && nodeClass.need > 0) *end++ = at;  // inputs need none
+    }
     const auto heavier = [&](NodeId a, NodeId b) {
         return nodeClasses_[a].need != nodeClasses_[b].need ? nodeClasses_[a].need > nodeClasses_[b].need : a < b;
     };
-    if (sorted_.size() == 2) {
-        if (heavier(sorted_[1], sorted_[0])) std::swap(sorted_[0], sorted_[1]);
-    } else if (sorted_.size() > 2) {
-        std::sort(sorted_.begin(), sorted_.end(), heavier);
+    if (end - begin == 2) {
+        if (heavier(begin[1], begin[0])) std::swap(begin[0], begin[1]);
+    } else if (end - begin > 2) {
+        std::sort(begin, end, heavier);
     }
-    return sorted_;
+    return {begin, end};
 }
 
 uint32_t Compiler::need(std::span<const NodeId> heavy) const {
     uint32_t most = 1;
-    for (size_t i = 0; i < heavy.size(); ++i)
-        most = std::max(most, nodeClasses_[heavy[i]].need + static_cast<uint32_t>(i));
+    for (uint32_t i = 0; i < heavy.size(); ++i) most = std::max(most, nodeClasses_[heavy[i]].need + i);
     return most;
 }
 
@@ -119,7 +131,7 @@ void Compiler::order() {
         if (done[id]) continue;
         if (ready) {
             done[id] = true;
-            nodeClasses_[id].key = static_cast<uint32_t>(ordered_.size());
+            nodeClasses_[id].what = static_cast<uint32_t>(ordered_.size());
             ordered_.push_back(id);
             continue;
         }
@@ -132,15 +144,14 @@ void Compiler::order() {
 
 TapeBuilder::Use Compiler::useOf(const field::Operand& o) {
     const NodeClass& f = fateOf(o.node);
-    return {f.kind == NodeClass::Constant ? constants_.source(o.node, f.value) : f.key, o.origin};
+    return {f.kind == NodeClass::Constant ? constants_.source(o.node, f.value()) : f.what, o.origin};
 }
 
-/// Names each value from which an op chooses by all that it consists of, slots by their keys: so names outlast a change
-/// of numbers and of other parts. What a blend joins has the name of the blend.
-void Compiler::namePieces() {
-    PageVector<uint64_t> hashes(nodeClasses_.size());  // of reached nodes
+/// Tells nodes by all that they consist of, slots by their keys: so names outlast a change of numbers and of other
+/// parts. Reads nothing but the graph.
+void Compiler::hashNodes() {
+    hashes_.resize(nodeClasses_.size());
     for (NodeId id = 0; id <= root_; ++id) {
-        if (nodeClasses_[id].kind == NodeClass::Unreached) continue;
         const Node& n = graph_.node(id);
         uint64_t hash = combine(static_cast<uint64_t>(n.op) + 1, n.data);
         if (n.op == codeOf<ops::Slot>) {
@@ -149,11 +160,15 @@ void Compiler::namePieces() {
         } else if (field::traits(n.op).readsGrid) {
             hash = combine(static_cast<uint64_t>(n.op) + 1, graph_.grids()[n.data]->hash());
         }
-        for (const field::Operand& o : graph_.operands(id)) hash = combine(hash, hashes[o.node]);
-        hashes[id] = hash;
+        for (const field::Operand& o : graph_.operands(id)) hash = combine(hash, hashes_[o.node]);
+        hashes_[id] = hash;
     }
+}
+
+/// Names each value from which an op chooses. What a blend joins has the name of the blend.
+void Compiler::namePieces() {
     pieces_.assign(nodeClasses_.size(), 0);
-    const auto nameOf = [&](NodeId id) { return static_cast<uint32_t>(hashes[id]) | 1u; };
+    const auto nameOf = [&](NodeId id) { return static_cast<uint32_t>(hashes_[id]) | 1u; };
     for (NodeId id = root_ + 1; id-- > 0;) {  // a blend before what it joins
         if (nodeClasses_[id].kind == NodeClass::Unreached) continue;
         const field::OpTraits& row = field::traits(graph_.node(id).op);
@@ -186,12 +201,17 @@ Tape Compiler::write(TapeBuilder::Scale scale) {
     builder.begin(ordered_.size() + 3);
     for (NodeId id = 0; id <= root_; ++id) {
         if (nodeClasses_[id].kind == NodeClass::Unreached || !isInput(id)) continue;
-        nodeClasses_[id].key = static_cast<uint32_t>(ordered_.size()) + graph_.node(id).data;
-        builder.bindInput(nodeClasses_[id].key, graph_.node(id).data);
+        nodeClasses_[id].what = static_cast<uint32_t>(ordered_.size()) + graph_.node(id).data;
+        builder.bindInput(nodeClasses_[id].what, graph_.node(id).data);
     }
     builder.result(useOf({root_, 0}));
     std::vector<TapeBuilder::Use> uses;
+    constexpr size_t ahead = 8;  // the table of numbers is larger than the caches
     for (size_t i = ordered_.size(); i-- > 0;) {
+        if (i >= ahead)
+            for (const field::Operand& o : graph_.operands(ordered_[i - ahead]))
+                if (const NodeClass& f = fateOf(o.node); f.kind == NodeClass::Constant)
+                    constants_.prefetch(o.node, f.value());
         const Node& n = graph_.node(ordered_[i]);
         const auto key = static_cast<uint32_t>(i);
         uses.clear();
@@ -215,8 +235,8 @@ Grids::Grids(std::vector<field::SampledGridPtr> all) : list(std::move(all)) {
     for (const field::SampledGridPtr& grid : list) words.push_back(grid->words().data());
 }
 
-Tape compile(const field::Graph& graph, const field::Field& field, std::span<const float> constants) {
-    return Compiler(graph, field.value.id(), constants, false).run(field);
+Tape compile(const field::Graph& graph, const field::Field& field, std::span<const float> constants, int threads) {
+    return Compiler(graph, field.value.id(), constants, false, threads).run(field);
 }
 
 }  // namespace sgm::eval

@@ -18,11 +18,13 @@ using field::NodeId;
 
 /// What a node turned out to be: a number, another node, or an instruction.
 struct NodeClass {
-    enum Kind : uint8_t { Unreached, Constant, Same, Instruction } kind = Unreached;
-    NodeId same = 0;    ///< Same
-    float value = 0;    ///< Constant
-    uint32_t need = 0;  ///< registers to compute it (Sethi & Ullman 1970), for Instruction
-    uint32_t key = 0;   ///< of the value in TapeBuilder, for Instruction
+    enum Kind : uint32_t { Unreached, Constant, Same, Instruction };
+    uint32_t kind : 2 = Unreached;
+    uint32_t need : 30 = 0;  ///< registers to compute it (Sethi & Ullman 1970), for Instruction
+    /// Of Constant the number's bits, of Same the node, of Instruction the value's key in TapeBuilder.
+    uint32_t what = 0;
+
+    float value() const { return std::bit_cast<float>(what); }
 };
 
 /// UniformParams of a tape, each once: told by their bits, or by the node they come from, so that one may change alone.
@@ -38,6 +40,10 @@ public:
         keys_.push_back(key);
         values_.push_back(value);
         return place | constantBit;
+    }
+    /// Fetches what `source` reads into the cache.
+    void prefetch(NodeId node, float value) const {
+        index_.prefetch(mix(byNode_ ? node : std::bit_cast<uint32_t>(value)));
     }
     /// The number's place in the table, by node; none for a node that no instruction reads.
     uint32_t placeOf(NodeId node) const { return find(node); }
@@ -57,8 +63,9 @@ private:
 
 class Compiler {
 public:
-    Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants, bool byNode)
+    Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants, bool byNode, int threads = 0)
         : graph_(graph),
+          threads_(threads),
           root_(root),
           slots_(constants),
           nodeClasses_(size_t{root} + 1, NodeClass{}),
@@ -71,7 +78,7 @@ public:
     const NodeClass& nodeClass(NodeId id) const { return nodeClasses_[id]; }
     /// The node's number, from those of its operands; only for a node that is one.
     float number(NodeId id);
-    void setNumber(NodeId id, float value) { nodeClasses_[id].value = value; }
+    void setNumber(NodeId id, float value) { nodeClasses_[id].what = std::bit_cast<uint32_t>(value); }
     void bind(std::span<const float> constants) { slots_ = constants; }
     /// The operand whose value is the node's own, since the other one is a number that changes nothing, as 1 in a
     /// product.
@@ -87,22 +94,25 @@ private:
     std::span<const NodeId> byRegisterNeed(NodeId id);
     uint32_t need(std::span<const NodeId> heavy) const;
     void order();
+    void hashNodes();
     void namePieces();
     Tape write(TapeBuilder::Scale scale);
     TapeBuilder::Use useOf(const field::Operand& o);
 
     /// The node that stands for `id`.
-    NodeId standIn(NodeId id) const { return nodeClasses_[id].kind == NodeClass::Same ? nodeClasses_[id].same : id; }
+    NodeId standIn(NodeId id) const { return nodeClasses_[id].kind == NodeClass::Same ? nodeClasses_[id].what : id; }
     const NodeClass& fateOf(NodeId id) const { return nodeClasses_[standIn(id)]; }
     bool isInput(NodeId id) const { return graph_.node(id).op == field::codeOf<field::ops::Input>; }
 
     const field::Graph& graph_;
+    const int threads_;
     const NodeId root_;
     std::span<const float> slots_;
     PageVector<NodeClass> nodeClasses_;
     std::vector<float> args_;
     std::vector<NodeId> sorted_;
     PageVector<NodeId> ordered_;
+    PageVector<uint64_t> hashes_;  ///< by node, of all that it consists of
     PageVector<uint32_t> pieces_;  ///< by node, see Instruction::piece
     Constants constants_;
     bool owned_ = false;  ///< someone owns something

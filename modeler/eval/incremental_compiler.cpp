@@ -79,7 +79,7 @@ bool IncrementalCompiler::rebind(const field::Graph& graph, const field::Field& 
         if (id == last) continue;
         last = id;
         const float value = compiler.number(id);
-        if (std::bit_cast<uint32_t>(value) == std::bit_cast<uint32_t>(compiler.nodeClass(id).value)) continue;
+        if (std::bit_cast<uint32_t>(value) == compiler.nodeClass(id).what) continue;
         compiler.setNumber(id, value);
         if (const uint32_t place = compiler.placeOf(id); place != TapeBuilder::none) {
             if (!table) table = std::make_shared<std::vector<float>>(*changed_.before);

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "modeler/core/pages.h"
 #include "modeler/core/provenance.h"
 #include "modeler/core/vec.h"
 #include "modeler/field/field.h"
@@ -70,9 +71,9 @@ public:
 
 private:
     friend class TapeBuilder;
-    std::vector<Instruction> code_;
-    std::vector<Source> sources_;
-    std::vector<OriginId> origins_{0};
+    LargePageVector<Instruction> code_;
+    LargePageVector<Source> sources_;
+    LargePageVector<OriginId> origins_{0};
     std::shared_ptr<const std::vector<float>> constants_;  ///< shared by a tape and all its shortened forms
     std::shared_ptr<const Grids> grids_;
     uint32_t registers_ = 3;
@@ -84,7 +85,8 @@ private:
 };
 
 /// Binds `constants` (by SlotId; graph.constants() for the present ones), folds what is constant, orders and allocates.
-/// Costs time linear in the nodes reachable from the field.
-Tape compile(const field::Graph& graph, const field::Field& field, std::span<const float> constants);
+/// Costs time linear in the graph's nodes. On `threads` threads, 0 for all that the machine has, of which nothing
+/// shows in the tape.
+Tape compile(const field::Graph& graph, const field::Field& field, std::span<const float> constants, int threads = 0);
 
 }  // namespace sgm::eval

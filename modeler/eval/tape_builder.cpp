@@ -8,7 +8,7 @@ namespace sgm::eval {
 
 void TapeBuilder::begin(size_t keys) {
     if (values_.size() < keys) {
-        values_.resize(keys);
+        values_.resize(keys, Value{});
         liveBits_.resize(keys / 64 + 1);
     }
     if (code_.size() < keys) code_.resize(keys);

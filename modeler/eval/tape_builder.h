@@ -76,13 +76,13 @@ private:
     uint32_t takeRegister();
     Instruction& begun(uint32_t key, const Instruction& like, size_t count, bool listed);
 
-    std::vector<Value> values_;       // all dead between tapes
+    LargePageVector<Value> values_;   // all dead between tapes
     std::vector<uint64_t> liveBits_;  // by key, inputs apart
     std::vector<uint32_t> inputs_, free_;
-    std::vector<Instruction> code_;  // written from its end down to `first_`
+    LargePageVector<Instruction> code_;  // written from its end down to `first_`
     size_t first_ = 0;
-    std::vector<Source> sources_;
-    std::vector<OriginId> origins_;
+    LargePageVector<Source> sources_;
+    LargePageVector<OriginId> origins_;
     uint32_t registers_ = 3, longest_ = 0;
     Source result_ = 0;
 };

@@ -28,15 +28,12 @@ NodeRef distanceTo(const Box3f& box, Point p) {
 
 }  // namespace
 
-Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath) {
+Point turned(Point p, const Mat3& r, uint64_t rotationPath) {
     Graph& g = p.x.graph();
-    const Mat3& r = frame.rotation;
-    const Vec3d centre = r.transposed() * frame.centre;
     // Every shape comes here: its names are hashed once for all.
     constexpr uint64_t names[3][3] = {{hashText("rotation.xx"), hashText("rotation.xy"), hashText("rotation.xz")},
                                       {hashText("rotation.yx"), hashText("rotation.yy"), hashText("rotation.yz")},
                                       {hashText("rotation.zx"), hashText("rotation.zy"), hashText("rotation.zz")}};
-    constexpr std::array centreNames{hashText("centre.x"), hashText("centre.y"), hashText("centre.z")};
     // Shapes with equal axes share these slots. -0 equals 0, so zeros are written as +0, whichever shape writes them.
     const auto entry = [&](uint64_t name, double value) { return named(g, rotationPath, name, value + 0.0); };
     const auto along = [&](const Vec3d& column, const uint64_t* name) {
@@ -44,9 +41,14 @@ Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath)
             if (std::abs(column[axis]) == 1) return column[axis] > 0 ? component(p, axis) : -component(p, axis);
         return dot(Point{entry(name[0], column.x), entry(name[1], column.y), entry(name[2], column.z)}, p);
     };
-    const Vec3f c = centre.as<float>();
-    const auto [x, y, z] = g.slots(path, centreNames, std::array{c.x, c.y, c.z});
-    return Point{along(r.x, names[0]), along(r.y, names[1]), along(r.z, names[2])} - Point{x, y, z};
+    return {along(r.x, names[0]), along(r.y, names[1]), along(r.z, names[2])};
+}
+
+Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath) {
+    constexpr std::array centreNames{hashText("centre.x"), hashText("centre.y"), hashText("centre.z")};
+    const Vec3f c = (frame.rotation.transposed() * frame.centre).as<float>();
+    const auto [x, y, z] = p.x.graph().slots(path, centreNames, std::array{c.x, c.y, c.z});
+    return turned(p, frame.rotation, rotationPath) - Point{x, y, z};
 }
 
 Box3f toWorld(const Box3f& local, const Frame& frame) {

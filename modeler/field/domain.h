@@ -16,8 +16,11 @@ struct Frame {
     Mat3 rotation;  ///< world from local; identity adds no nodes beyond the translation
 };
 
-/// p in the frame's own axes: Rᵀp − Rᵀcentre. A rotation that only exchanges and turns round axes adds no numbers; the
-/// nine of any other are slots under `rotationPath`, so that frames which share it share the three dot products.
+/// p along the axes of a rotation: Rᵀp. What only exchanges and turns round axes adds no numbers; the nine of any other
+/// are slots under `rotationPath`.
+Point turned(Point p, const Mat3& rotation, uint64_t rotationPath);
+/// p in the frame's own axes: Rᵀp − Rᵀcentre. Frames that share `rotationPath` share the three dot products of
+/// `turned`.
 Point toLocal(Point p, const Frame& frame, uint64_t path, uint64_t rotationPath);
 inline Point toLocal(Point p, const Frame& frame, uint64_t path) { return toLocal(p, frame, path, path); }
 /// The bounds of `local` (a box in the frame's axes) in the object's frame.

@@ -27,7 +27,16 @@ uint64_t hashOf(OpCode op, std::span<const Operand> operands, uint32_t data, Nod
     return 2 * static_cast<uint64_t>(newest) + (h >> 59);
 }
 
-uint64_t hashOf(const SlotKey& key) { return combine(key.path, key.attribute); }
+/// What tells apart of which nodes the newest operands are compared: their own op and that of the operand.
+OpCode kindOf(OpCode op, OpCode newest) {
+    return static_cast<OpCode>(static_cast<uint32_t>(op) + static_cast<uint32_t>(newest) * 12);
+}
+
+NodeId newestOf(std::span<const Operand> operands) {
+    NodeId newest = 0;
+    for (const Operand& o : operands) newest = std::max(newest, o.node);
+    return newest;
+}
 
 bool isLiteral(const Node& n) { return n.op == codeOf<ops::Literal>; }
 float literalOf(const Node& n) { return std::bit_cast<float>(n.data); }
@@ -52,17 +61,11 @@ NodeRef unary(OpCode op, NodeRef a) { return a.graph().apply(op, {a}); }
 Graph::Graph() = default;
 
 void Graph::reserveBoxes(size_t count) {
-    // Centre and half-size are slots; the coordinates less the centre; the box; the minimum that joins it.
-    constexpr size_t slots = 6, differences = 3;
-    const auto reserve = [](auto& list, size_t more) { list.reserve(list.size() + more); };
-    reserve(nodes_, count * (slots + differences + 2));
-    reserve(operands_, count * (2 * differences + (slots + 3) + 2));
-    reserve(constants_, count * slots);
-    reserve(slotKeys_, count * slots);
-    reserve(slotNodes_, count * slots);
-    reserve(runs_, count);
-    nodeIndex_.reserve(nodes_.size() + count * (differences + 2));
-    runIndex_.reserve(runs_.size() + count);
+    // A box is its slots and a node, and the minimum that joins it.
+    constexpr size_t slots = 6, operands = slots + 3;
+    nodes_.reserve(nodes_.size() + count * (boxNodes + 1));
+    operands_.reserve(operands_.size() + count * (operands + 2));
+    slots_.reserve(count * slots, count);
 }
 
 NodeRef Graph::input(uint32_t axis) {
@@ -72,93 +75,46 @@ NodeRef Graph::input(uint32_t axis) {
 
 NodeRef Graph::literal(float value) {
     const auto bits = std::bit_cast<uint32_t>(value);
-    if (latestLiteral_ == absent || nodes_[latestLiteral_].data != bits)
-        latestLiteral_ = insert(codeOf<ops::Literal>, {}, bits);
+    if (latestLiteral_ != absent && nodes_[latestLiteral_].data == bits) return {this, latestLiteral_};
+    const uint64_t h = hashOf(codeOf<ops::Literal>, bits);
+    latestLiteral_ = index_.findLeaf(h, [&](NodeId i) { return isLiteral(nodes_[i]) && nodes_[i].data == bits; });
+    if (latestLiteral_ == absent) {
+        latestLiteral_ = append(codeOf<ops::Literal>, {}, bits);
+        index_.insert(h, latestLiteral_);
+    }
     return {this, latestLiteral_};
 }
 
 NodeRef Graph::slot(SlotKey key, float value) {
-    SlotRun& run = runs_[runOf(key.path)];
-    if (const SlotId known = findSlot(run, key); known != absent) {
-        constants_[known] = value;
-        return {this, slotNodes_[known]};
+    if (const SlotId known = slots_.find(key); known != absent) {
+        slots_.setValue(known, value);
+        return {this, slots_.nodeOf(known)};
     }
-    const auto next = static_cast<SlotId>(constants_.size());
-    if (run.count == 0) run.first = next;
-    if (run.first + run.count == next && run.count < longestRun) {
-        ++run.count;
-    } else {
-        run.hasMore = true;
-        laterSlots_.insert(hashOf(key), next);
-    }
-    return addSlot(key, value);
+    const auto node = static_cast<NodeId>(nodes_.size());
+    append(codeOf<ops::Slot>, {}, slots_.add(key, value, node));
+    return {this, node};
+}
+
+NodeRef Graph::slot(float value) {
+    const auto node = static_cast<NodeId>(nodes_.size());
+    append(codeOf<ops::Slot>, {}, slots_.add(value, node));
+    return {this, node};
 }
 
 void Graph::addSlots(uint64_t path, std::span<const uint64_t> attributes, std::span<const float> values,
                      std::span<NodeRef> slots) {
-    SlotRun& run = runs_[runOf(path)];
-    const size_t first = constants_.size(), count = attributes.size();
-    const bool goesOn = run.count == 0 || (run.first + run.count == first && !run.hasMore);
-    const auto isKnown = [&](uint64_t attribute) { return findSlot(run, {path, attribute}) != absent; };
-    if (!goesOn || run.count + count > longestRun || std::any_of(attributes.begin(), attributes.end(), isKnown)) {
-        for (size_t i = 0; i < count; ++i) slots[i] = slot({path, attributes[i]}, values[i]);
-        return;
-    }
-    if (run.count == 0) run.first = static_cast<SlotId>(first);
-    run.count += static_cast<uint32_t>(count);
-    const auto operands = static_cast<uint32_t>(operands_.size()), node = static_cast<NodeId>(nodes_.size());
-    constants_.resize(first + count);
-    slotKeys_.resize(first + count);
-    slotNodes_.resize(first + count);
-    nodes_.resize(node + count);
-    float* const constant = constants_.data() + first;
-    SlotKey* const key = slotKeys_.data() + first;
-    NodeId* const slotNode = slotNodes_.data() + first;
-    Node* const made = nodes_.data() + node;
-    for (uint32_t i = 0; i < count; ++i) {
-        constant[i] = values[i];
-        key[i] = {path, attributes[i]};
-        slotNode[i] = node + i;
-        made[i] = {codeOf<ops::Slot>, static_cast<SlotId>(first + i), operands, 0};
-        slots[i] = {this, node + i};
+    const auto node = static_cast<NodeId>(nodes_.size());
+    const auto first = slots_.addRow(path, attributes, values, node);
+    for (uint32_t i = 0; i < attributes.size(); ++i) {
+        slots[i] = first ? NodeRef(this, node + i) : slot({path, attributes[i]}, values[i]);
+        if (first) append(codeOf<ops::Slot>, {}, *first + i);
     }
 }
-
-/// The number of the run of a path, which is empty where no slot of the path is known.
-uint32_t Graph::runOf(uint64_t path) {
-    const auto isOf = [&](uint32_t run) { return slotKeys_[runs_[run].first].path == path; };
-    if (latestRun_ != absent && isOf(latestRun_)) return latestRun_;
-    const uint64_t h = mix(path);
-    latestRun_ = runIndex_.find(h, isOf);
-    if (latestRun_ == absent) {
-        latestRun_ = static_cast<uint32_t>(runs_.size());
-        runs_.push_back({});
-        runIndex_.insert(h, latestRun_);
-    }
-    return latestRun_;
-}
-
-/// The slot of the key, or `absent`.
-SlotId Graph::findSlot(const SlotRun& run, const SlotKey& key) const {
-    for (SlotId id = run.first; id < run.first + run.count; ++id)
-        if (slotKeys_[id].attribute == key.attribute) return id;
-    if (!run.hasMore) return absent;
-    return laterSlots_.find(hashOf(key), [&](SlotId id) { return slotKeys_[id] == key; });
-}
-
-NodeRef Graph::slot(float value) { return addSlot({}, value); }
 
 uint32_t Graph::grid(const SampledGridPtr& samples) {
     const auto at = static_cast<uint32_t>(std::find(grids_.begin(), grids_.end(), samples) - grids_.begin());
     if (at == grids_.size()) grids_.push_back(samples);
     return at;
-}
-
-NodeRef Graph::addSlot(SlotKey key, float value) {
-    constants_.push_back(value);
-    slotKeys_.push_back(key);
-    slotNodes_.push_back(append(codeOf<ops::Slot>, {}, static_cast<SlotId>(constants_.size() - 1)));
-    return {this, slotNodes_.back()};
 }
 
 NodeRef Graph::apply(OpCode op, std::span<const Operand> operands, uint32_t data) {
@@ -192,21 +148,24 @@ NodeRef Graph::apply(OpCode op, std::initializer_list<NodeRef> operands, uint32_
 NodeId Graph::insert(OpCode op, std::span<const Operand> operands, uint32_t data) {
     [[maybe_unused]] const bool mayOwn = traits(op).owner != ops::Owner::First;
     for ([[maybe_unused]] const Operand& o : operands) assert(o.node < nodes_.size() && (mayOwn || o.origin == 0));
-    NodeId newest = 0;
-    for (const Operand& o : operands) newest = std::max(newest, o.node);
-    const uint64_t h = operands.empty() ? hashOf(op, data) : hashOf(op, operands, data, newest);
-    if (newest <= latestOperand_) {  // else no node has all of these operands
-        const NodeId known = nodeIndex_.find(h, [&](NodeId i) {
-            const Node& n = nodes_[i];
-            const auto seen = this->operands(i);
-            return n.op == op && n.data == data &&
-                   std::equal(seen.begin(), seen.end(), operands.begin(), operands.end());
-        });
-        if (known != absent) return known;
-    }
-    latestOperand_ = std::max(latestOperand_, newest);
-    nodeIndex_.insert(h, static_cast<NodeId>(nodes_.size()));
+    const NodeId newest = newestOf(operands);
+    if (const NodeId known = find(op, operands, data, newest); known != absent) return known;
+    index_.note(newest, kindOf(op, nodes_[newest].op));
     return append(op, operands, data);
+}
+
+NodeId Graph::find(OpCode op, std::span<const Operand> operands, uint32_t data, NodeId newest) {
+    const auto enter = [this](NodeId id) {
+        const auto list = this->operands(id);
+        if (!list.empty()) index_.insert(hashOf(nodes_[id].op, list, nodes_[id].data, newestOf(list)), id);
+    };
+    const auto isSame = [&](NodeId i) {
+        const Node& n = nodes_[i];
+        const auto seen = this->operands(i);
+        return n.op == op && n.data == data && std::equal(seen.begin(), seen.end(), operands.begin(), operands.end());
+    };
+    return index_.find(newest, kindOf(op, nodes_[newest].op), hashOf(op, operands, data, newest),
+                       static_cast<NodeId>(nodes_.size()), enter, isSame);
 }
 
 NodeId Graph::append(OpCode op, std::span<const Operand> operands, uint32_t data) {
@@ -215,6 +174,39 @@ NodeId Graph::append(OpCode op, std::span<const Operand> operands, uint32_t data
     operands_.resize(first + operands.size());
     std::copy(operands.begin(), operands.end(), operands_.begin() + static_cast<std::ptrdiff_t>(first));
     return static_cast<NodeId>(nodes_.size() - 1);
+}
+
+constinit const std::array<uint64_t, 6> Graph::boxAttributes{hashText("centre.x"), hashText("centre.y"),
+                                                             hashText("centre.z"), hashText("size.x"),
+                                                             hashText("size.y"),   hashText("size.z")};
+
+NodeId Graph::addBoxes(size_t count) {
+    constexpr uint32_t slots = boxAttributes.size(), listed = slots + 3;
+    const size_t first = nodes_.size(), operand = operands_.size();
+    const SlotId slot = slots_.addRows(count, slots);
+    nodes_.resize(first + count * boxNodes);
+    operands_.resize(operand + count * listed);
+    if (count == 0) return static_cast<NodeId>(first);
+    // Where the first one's slots and operands lie tells where those of all others do.
+    nodes_[first] = {codeOf<ops::Slot>, slot, static_cast<uint32_t>(operand), 0};
+    const OpCode kind = kindOf(codeOf<ops::Box>, codeOf<ops::Slot>);
+    index_.note(static_cast<NodeId>(first + slots - 1), kind);
+    index_.note(static_cast<NodeId>(first + (count - 1) * boxNodes + slots - 1), kind);
+    return static_cast<NodeId>(first);
+}
+
+void Graph::setBox(NodeId first, size_t index, const Point& p, const Box& box) {
+    constexpr uint32_t slots = boxAttributes.size(), listed = slots + 3;
+    const auto at = static_cast<uint32_t>(index);
+    const NodeId node = first + at * boxNodes;
+    const SlotId slot = nodes_[first].data + at * slots;
+    const uint32_t operand = nodes_[first].first + at * listed;
+    slots_.setRow(slot, box.path, boxAttributes, box.numbers, node);
+    for (uint32_t i = at == 0 ? 1 : 0; i < slots; ++i) nodes_[node + i] = {codeOf<ops::Slot>, slot + i, operand, 0};
+    nodes_[node + slots] = {codeOf<ops::Box>, 0, operand, listed};
+    Operand* const list = operands_.data() + operand;
+    list[0] = {p.x.id(), 0}, list[1] = {p.y.id(), 0}, list[2] = {p.z.id(), 0};
+    for (uint32_t i = 0; i < slots; ++i) list[3 + i] = {node + i, 0};
 }
 
 NodeRef operator+(NodeRef a, NodeRef b) { return binary(codeOf<ops::Add>, a, b); }

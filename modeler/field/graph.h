@@ -13,24 +13,11 @@
 
 #include "modeler/core/pages.h"
 #include "modeler/core/provenance.h"
-#include "modeler/field/hash_index.h"
+#include "modeler/field/node_index.h"
 #include "modeler/field/sampled_grid.h"
+#include "modeler/field/slot_table.h"
 
 namespace sgm::field {
-
-/// Row index in the op table (modeler/field/ops.h); `codeOf<Add>` names one.
-enum class OpCode : uint16_t {};
-
-using NodeId = uint32_t;
-/// Index into a graph's constants table.
-using SlotId = uint32_t;
-
-/// What names a number across re-derivations: the hashed path of the shape it belongs to, and the attribute.
-struct SlotKey {
-    uint64_t path = 0;       ///< the shape's stream key (grammar/derive)
-    uint64_t attribute = 0;  ///< hashText of the attribute's name and component, "size.x"
-    friend bool operator==(const SlotKey&, const SlotKey&) = default;
-};
 
 /// One node. Leaves have no operands: Input (`data` 0, 1, 2 = x, y, z), Literal (`data` = float bits),
 /// Slot (`data` = SlotId). Other ops may keep a structural integer in `data` (the passes of a KIFS, the
@@ -87,11 +74,12 @@ public:
     NodeRef literal(float value);
     /// A number that may change without changing structure. A key seen before keeps its slot and takes the new value.
     NodeRef slot(SlotKey key, float value);
+    /// Says that no slot has a key of this path so far, which spares looking for it.
+    void beginPath(uint64_t path) { slots_.beginPath(path); }
     /// Slots of one path by attribute, as `slot` gives them one after the other.
     template <size_t count>
     std::array<NodeRef, count> slots(uint64_t path, const std::array<uint64_t, count>& attributes,
                                      const std::array<float, count>& values) {
-        static_assert(count <= longestRun);
         std::array<NodeRef, count> made;
         addSlots(path, attributes, values, made);
         return made;
@@ -113,44 +101,42 @@ public:
     }
     size_t nodeCount() const { return nodes_.size(); }
     /// Present values of all slots, by SlotId: what `compile` binds and the GPU gets as a buffer.
-    std::span<const float> constants() const { return constants_; }
+    std::span<const float> constants() const { return slots_.values(); }
     /// By number.
     const std::vector<SampledGridPtr>& grids() const { return grids_; }
     /// Key of each slot, by SlotId.
-    std::span<const SlotKey> slotKeys() const { return slotKeys_; }
+    std::span<const SlotKey> slotKeys() const { return slots_.keys(); }
+
+    /// Makes place for so many boxes, each with slots of its own, which hold anything until `setBox`. No slot has a key
+    /// of their paths so far. The first one's node; the others follow boxNodes apart.
+    NodeId addBoxes(size_t count);
+    /// The box of a scope: its centre and half-size along x, y and z become slots by `boxAttributes`.
+    struct Box {
+        uint64_t path;
+        std::array<float, 6> numbers;
+    };
+    /// Makes a box of a row that `addBoxes` made place for, from any thread.
+    void setBox(NodeId first, size_t index, const Point& p, const Box& box);
+    static constexpr uint32_t boxNodes = 7;
+    static const std::array<uint64_t, 6> boxAttributes;  ///< "centre.x" … "size.z"
 
 private:
     static constexpr uint32_t absent = HashIndex::none;
-    static constexpr uint32_t longestRun = 32;  ///< is searched one by one
-
-    /// Slots in a row whose keys have the same path: a shape's numbers are mostly made together.
-    struct SlotRun {
-        SlotId first = 0;
-        uint32_t count = 0;
-        bool hasMore = false;  ///< the path has slots elsewhere, which `laterSlots_` knows
-    };
 
     NodeRef input(uint32_t axis);
     NodeId insert(OpCode op, std::span<const Operand> operands, uint32_t data);
+    NodeId find(OpCode op, std::span<const Operand> operands, uint32_t data, NodeId newest);
     NodeId append(OpCode op, std::span<const Operand> operands, uint32_t data);
-    uint32_t runOf(uint64_t path);
-    SlotId findSlot(const SlotRun& run, const SlotKey& key) const;
-    NodeRef addSlot(SlotKey key, float value);
     void addSlots(uint64_t path, std::span<const uint64_t> attributes, std::span<const float> values,
                   std::span<NodeRef> slots);
 
     PageVector<Node> nodes_;
     PageVector<Operand> operands_;
-    PageVector<float> constants_;
-    PageVector<SlotKey> slotKeys_;
-    PageVector<NodeId> slotNodes_;  ///< by SlotId
-    PageVector<SlotRun> runs_;
+    SlotTable slots_;
     std::vector<SampledGridPtr> grids_;
-    HashIndex nodeIndex_, runIndex_, laterSlots_;
+    NodeIndex index_;
     std::array<NodeId, 3> inputs_{absent, absent, absent};
     NodeId latestLiteral_ = absent;
-    uint32_t latestRun_ = absent;
-    NodeId latestOperand_ = 0;  ///< no node has an operand after this one
 };
 
 NodeRef operator+(NodeRef a, NodeRef b);

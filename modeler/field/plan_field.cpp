@@ -18,81 +18,55 @@ using plan::FormulaNode;
 /// How far a mitred corner may stand out, in offsets.
 constexpr double mitreLimit = 4;
 
-/// Where the corner between two edges goes when both move outward by `out`; a reflex one comes nearer, which is left
-/// out.
-plan::Vec2 movedCorner(const plan::PlacedEdge& before, const plan::PlacedEdge& after, double out) {
-    const plan::Vec2 a = before.normal(), b = after.normal(), sum = a + b;
+/// Where the corner between two edges of these normals goes when both move outward by `out`; a reflex one comes nearer,
+/// which is left out.
+plan::Vec2 movedCorner(plan::Vec2 a, plan::Vec2 b, plan::Vec2 corner, double out) {
+    const plan::Vec2 sum = a + b;
     const double square = dot(sum, sum);
-    if (square < 1e-12) return after.from + a * (out * mitreLimit);
+    if (square < 1e-12) return corner + a * (out * mitreLimit);
     const plan::Vec2 tip = sum * (2 / square);
     const double reach = std::min(length(tip), mitreLimit);
-    return after.from + tip * (out * reach / length(tip));
-}
-
-/// By edge: the first of those parallel to it either way, so nearly that its line leaves its edge by no more than 10 µm
-/// anywhere in the footprint.
-std::vector<uint32_t> leadersOf(const std::vector<plan::PlacedEdge>& edges) {
-    plan::Box2 box;
-    for (const plan::PlacedEdge& e : edges) box.add(e.from);
-    const double tolerance = 1e-5 / std::max(length(box.size()), 1e-2);
-    std::vector<double> angles;
-    for (const plan::PlacedEdge& e : edges) {
-        const plan::Vec2 n = e.normal();
-        double angle = std::atan2(n.z, n.x);
-        if (angle < 0) angle += pi;
-        angles.push_back(angle > pi - tolerance ? angle - pi : angle);
-    }
-    std::vector<uint32_t> order(edges.size()), leaders(edges.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(),
-              [&](uint32_t a, uint32_t b) { return std::pair(angles[a], a) < std::pair(angles[b], b); });
-    for (size_t begin = 0, end; begin < order.size(); begin = end) {
-        uint32_t leader = order[begin];
-        for (end = begin; end < order.size() && angles[order[end]] <= angles[order[begin]] + tolerance; ++end)
-            leader = std::min(leader, order[end]);
-        for (size_t i = begin; i < end; ++i) leaders[order[i]] = leader;
-    }
-    return leaders;
+    return corner + tip * (out * reach / length(tip));
 }
 
 }  // namespace
 
-NodeRef pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t index, double value) {
+NodeRef pathSlot(Graph& graph, uint64_t path, NumberName attribute, uint64_t index, double value) {
     const auto number = static_cast<float>(value);
-    return path == 0 ? graph.slot(number) : graph.slot({path, combine(hashText(attribute), index)}, number);
+    return path == 0 ? graph.slot(number) : graph.slot({path, combine(attribute.hash, index)}, number);
 }
 
 Quantity fixed(Graph& graph, double value) { return {graph.literal(static_cast<float>(value)), value}; }
 
-PlanField::PlanField(const plan::Footprint& footprint, const plan::Formula& formula, Point p, uint64_t path)
-    : footprint_(&footprint),
-      formula_(&formula),
-      p_(p),
-      edges_(plan::edgesOf(footprint)),
-      path_(path),
-      leaders_(leadersOf(edges_)),
-      distances_(edges_.size()),
-      alongs_(edges_.size()) {
+PlanField::PlanField(std::shared_ptr<const PlanNumbers> numbers, Point p, uint64_t path)
+    : numbers_(std::move(numbers)), p_(p), path_(path), distances_(edges().size()), alongs_(edges().size()) {
     outside_ = outsideByBends();
 }
+
+PlanField::PlanField(std::shared_ptr<const PlanNumbers> numbers, Graph& graph)
+    : numbers_(std::move(numbers)),
+      p_{graph.literal(0), graph.literal(0), graph.literal(0)},
+      distances_(edges().size(), graph.literal(0)),
+      outside_(graph.literal(0)) {}
 
 NodeRef PlanField::distance(uint32_t edge) const {
     std::optional<NodeRef>& known = distances_[edge];
     if (known) return *known;
-    const auto number = [&](std::string_view of, double v) { return pathSlot(graph(), path_, of, edge, v); };
-    const plan::Vec2 n = edges_[edge].normal();
-    const double c = dot(n, edges_[edge].from);  // where the normal is an axis: a coordinate
+    const auto number = [&](NumberName of, double v) { return pathSlot(graph(), path_, of, edge, v); };
+    const plan::Vec2 n = numbers_->normal(edge);
+    const double c = dot(n, edges()[edge].from);  // where the normal is an axis: a coordinate
     if (n.x == 1 || n.z == 1)
         known = (n.x == 1 ? p_.x : p_.z) - number("edge c", c);
     else if (n.x == -1 || n.z == -1)
         known = number("edge c", -c) - (n.x == -1 ? p_.x : p_.z);
     else {
         // By its leader's normal, which is its own or the opposite but for rounding.
-        const plan::PlacedEdge& e = edges_[edge];
-        const plan::Vec2 shared = edges_[leaders_[edge]].normal();
+        const plan::PlacedEdge& e = edges()[edge];
+        const uint32_t leader = numbers_->leaders()[edge];
+        const plan::Vec2 shared = numbers_->normal(leader);
         const double offset = dot(shared, (e.from + e.to) * 0.5);
-        known = dot(shared, n) > 0 ? alongNormal(leaders_[edge]) - number("edge c", offset)
-                                   : number("edge c", offset) - alongNormal(leaders_[edge]);
+        known = dot(shared, n) > 0 ? alongNormal(leader) - number("edge c", offset)
+                                   : number("edge c", offset) - alongNormal(leader);
     }
     return *known;
 }
@@ -101,16 +75,17 @@ NodeRef PlanField::distance(uint32_t edge) const {
 NodeRef PlanField::alongNormal(uint32_t edge) const {
     std::optional<NodeRef>& known = alongs_[edge];
     if (known) return *known;
-    const plan::Vec2 n = edges_[edge].normal();
+    const plan::Vec2 n = numbers_->normal(edge);
     known = p_.x * pathSlot(graph(), path_, "edge x", edge, n.x) + p_.z * pathSlot(graph(), path_, "edge z", edge, n.z);
     return *known;
 }
 
 /// Φ with the edges of bends relative to their bend's plane, and each bend relative to the one around it.
 NodeRef PlanField::outsideByBends() const {
-    const Bends bends = bendsOf(*formula_, edges_);
+    const Bends& bends = numbers_->bends();
+    const plan::Formula& formula = this->formula();
     if (bends.planes.empty()) return fold([this](uint32_t edge) { return distance(edge); });
-    const auto relative = [&](std::string_view of, uint64_t index, PlanPlane plane, uint32_t bend) {
+    const auto relative = [&](NumberName of, uint64_t index, PlanPlane plane, uint32_t bend) {
         const PlanPlane base = bend == Bends::none ? PlanPlane{} : bends.planes[bend];
         const auto number = [&](int axis, double v) {
             return pathSlot(graph(), path_, of, index * 3 + static_cast<uint64_t>(axis), v);
@@ -119,9 +94,9 @@ NodeRef PlanField::outsideByBends() const {
                number(2, plane.offset - base.offset);
     };
     std::vector<NodeRef> nodes;
-    nodes.reserve(formula_->nodes.size());
-    for (size_t i = 0; i < formula_->nodes.size(); ++i) {
-        const FormulaNode& node = formula_->nodes[i];
+    nodes.reserve(formula.nodes.size());
+    for (size_t i = 0; i < formula.nodes.size(); ++i) {
+        const FormulaNode& node = formula.nodes[i];
         NodeRef value;
         if (node.kind != FormulaNode::Kind::Edge) {
             const NodeRef a = nodes[node.first], b = nodes[node.second];
@@ -129,8 +104,8 @@ NodeRef PlanField::outsideByBends() const {
         } else if (bends.ofNode[i] == Bends::none) {
             value = distance(node.first);
         } else {
-            const plan::PlacedEdge& e = edges_[node.first];
-            value = relative("edge in bend", node.first, {e.normal(), dot(e.normal(), e.from)}, bends.ofNode[i]);
+            const plan::Vec2 n = numbers_->normal(node.first);
+            value = relative("edge in bend", node.first, {n, dot(n, edges()[node.first].from)}, bends.ofNode[i]);
         }
         if (const uint32_t bend = bends.beginsAt[i]; bend != Bends::none)
             value = value + relative("bend", bend, bends.planes[bend], bends.outer[bend]);
@@ -141,8 +116,8 @@ NodeRef PlanField::outsideByBends() const {
 
 NodeRef PlanField::fold(const std::function<NodeRef(uint32_t edge)>& leaf) const {
     std::vector<NodeRef> nodes;
-    nodes.reserve(formula_->nodes.size());
-    for (const FormulaNode& node : formula_->nodes)
+    nodes.reserve(formula().nodes.size());
+    for (const FormulaNode& node : formula().nodes)
         nodes.push_back(node.kind == FormulaNode::Kind::Edge  ? leaf(node.first)
                         : node.kind == FormulaNode::Kind::Max ? max(nodes[node.first], nodes[node.second])
                                                               : min(nodes[node.first], nodes[node.second]));
@@ -155,14 +130,15 @@ plan::Box2 PlanField::boundsOf(double out) const {
         box.add({p.x - r, p.z - r});
         box.add({p.x + r, p.z + r});
     };
-    for (const plan::PlacedEdge& e : edges_) around(e.from, std::max(out, 0.0));
+    for (const plan::PlacedEdge& e : edges()) around(e.from, std::max(out, 0.0));
     if (out <= 0) return box;
-    for (size_t i = 0; i < edges_.size(); ++i) {
-        if (edges_[i].ring != 0) continue;
-        const plan::Polygon& polygon = footprint_->polygons[edges_[i].polygon];
-        const size_t n = polygon.outer.size(), next = edges_[i].index + 1 == n ? i + 1 - n : i + 1;
-        if (cross(edges_[i].to - edges_[i].from, edges_[next].to - edges_[next].from) > 0)
-            box.add(movedCorner(edges_[i], edges_[next], out));
+    const std::vector<plan::PlacedEdge>& edges = this->edges();
+    for (uint32_t i = 0; i < edges.size(); ++i) {
+        if (edges[i].ring != 0) continue;
+        const auto n = static_cast<uint32_t>(footprint().polygons[edges[i].polygon].outer.size());
+        const uint32_t next = edges[i].index + 1 == n ? i + 1 - n : i + 1;
+        if (cross(edges[i].to - edges[i].from, edges[next].to - edges[next].from) > 0)
+            box.add(movedCorner(numbers_->normal(i), numbers_->normal(next), edges[next].from, out));
     }
     return box;
 }
@@ -175,13 +151,11 @@ Field PlanField::boxed(NodeRef value, uint64_t path, double bottom, double top, 
     const Vec3d centre{middle.x, (bottom + top) / 2, middle.z};
     const Vec3d half{size.x / 2 + apart, std::max(top - bottom, 0.0) / 2 + apart, size.z / 2 + apart};
     const Vec3f c = centre.as<float>(), h = half.as<float>();
-    const auto number = [&](std::string_view of, uint64_t axis, double v) {
-        return pathSlot(graph(), path, of, axis, v);
-    };
-    const Point p{p_.x - number("box centre", 0, centre.x), p_.y - number("box centre", 1, centre.y),
-                  p_.z - number("box centre", 2, centre.z)};
+    const auto number = [&](NumberName of, uint64_t axis, double v) { return pathSlot(graph(), path, of, axis, v); };
+    const Point middle3{number("box centre", 0, centre.x), number("box centre", 1, centre.y),
+                        number("box centre", 2, centre.z)};
     const Point size3{number("box half", 0, half.x), number("box half", 1, half.y), number("box half", 2, half.z)};
-    return {max(value, solids::boxDistance(p, size3)), {c - h, c + h}, 1, solids::growth(1)};
+    return {max(value, solids::boxDistance(p_, middle3, size3)), {c - h, c + h}, 1, solids::growth(1)};
 }
 
 }  // namespace sgm::field

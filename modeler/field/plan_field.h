@@ -4,12 +4,15 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "modeler/core/random.h"
 #include "modeler/field/field.h"
-#include "modeler/plan/formula.h"
+#include "modeler/field/plan_numbers.h"
 
 namespace sgm::field {
 
@@ -21,8 +24,13 @@ struct Quantity {
 /// A number that never changes, as a literal.
 Quantity fixed(Graph& graph, double value);
 
+/// The name of a number, hashed when the program is compiled.
+struct NumberName {
+    uint64_t hash;
+    consteval NumberName(const char* text) : hash(hashText(text)) {}
+};
 /// The slot keyed by (path, attribute and index), or a fresh one for path 0.
-NodeRef pathSlot(Graph& graph, uint64_t path, std::string_view attribute, uint64_t index, double value);
+NodeRef pathSlot(Graph& graph, uint64_t path, NumberName attribute, uint64_t index, double value);
 
 /// The distances to the lines of a footprint's edges, and Φ, their formula.
 class PlanField {
@@ -30,13 +38,19 @@ public:
     /// One half-plane an edge: nx·x + nz·z − c, numbers in slots keyed by (path, "edge i …"), fresh slots for path 0.
     /// Edges along an axis need one number, and parallel edges share what they have in common. `p` must be of the
     /// graph. 5 instructions an edge at most, 2 where most edges are parallel to others.
-    PlanField(const plan::Footprint& footprint, const plan::Formula& formula, Point p, uint64_t path);
+    PlanField(const plan::Footprint& footprint, const plan::Formula& formula, Point p, uint64_t path)
+        : PlanField(std::make_shared<const PlanNumbers>(footprint, formula), p, path) {}
+    /// The same of numbers that solids over one footprint share.
+    PlanField(std::shared_ptr<const PlanNumbers> numbers, Point p, uint64_t path);
+    /// Literals in place of distances and of the position: for who asks a solid for its bounds alone.
+    PlanField(std::shared_ptr<const PlanNumbers> numbers, Graph& graph);
 
     Graph& graph() const { return p_.x.graph(); }
     const Point& position() const { return p_; }
-    const plan::Footprint& footprint() const { return *footprint_; }
-    const plan::Formula& formula() const { return *formula_; }
-    const std::vector<plan::PlacedEdge>& edges() const { return edges_; }
+    const PlanNumbers& numbers() const { return *numbers_; }
+    const plan::Footprint& footprint() const { return numbers_->footprint(); }
+    const plan::Formula& formula() const { return numbers_->formula(); }
+    const std::vector<plan::PlacedEdge>& edges() const { return numbers_->edges(); }
     /// Signed distance to the line of edge i, > 0 outside, metres.
     NodeRef distance(uint32_t edge) const;
     /// Φ = −D: < 0 inside, metres; 1-Lipschitz, mitred beyond corners.
@@ -54,12 +68,9 @@ private:
     NodeRef outsideByBends() const;
     NodeRef alongNormal(uint32_t edge) const;
 
-    const plan::Footprint* footprint_;  ///< the caller's; must outlive this
-    const plan::Formula* formula_;
+    std::shared_ptr<const PlanNumbers> numbers_;
     Point p_;
-    std::vector<plan::PlacedEdge> edges_;
-    uint64_t path_;
-    std::vector<uint32_t> leaders_;  ///< by edge: the first that is parallel to it; itself where none is
+    uint64_t path_ = 0;
     mutable std::vector<std::optional<NodeRef>> distances_,
         alongs_;  ///< made when asked for; along each leader's normal
     NodeRef outside_;

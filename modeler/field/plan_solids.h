@@ -4,18 +4,20 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "modeler/field/plan_numbers.h"
 #include "modeler/field/primitives.h"
 #include "modeler/plan/formula.h"
 
 namespace sgm::field {
 
 /// The height, metres above its foot, of a row of PlanUse::OwnHeight over a footprint: at most a hundredth too much.
-/// `arguments` need their values alone. O(n log n) and a search of the footprint's depth.
-double heightOver(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+/// `arguments` need their values alone. O(n log n) and a search of the footprint's depth, which the numbers keep.
+double heightOver(const Primitive& row, const std::shared_ptr<const PlanNumbers>& numbers,
                   std::span<const Argument> arguments);
 
 /// How far, metres, a row over a footprint stands out of the edges below it: the `out` of a moulding, the eaves of a

@@ -12,11 +12,15 @@ struct Foot {
     NodeRef drop;  ///< how far below the eaves the roof ends
     double dropValue = 0;
     bool hasFascia = false;
+    NodeRef angle, sine, cosine;  ///< of the first pitch, where the drop has made them
+    bool knows(const Quantity& pitch) const { return hasAngle && pitch.node.id() == angle.id(); }
+    bool hasAngle = false;
 };
 
 NodeRef tangent(NodeRef angle);
-/// The signed distance to the plane that rises inward of `outside` = −inset from `up` = rise.
-NodeRef slopePlane(NodeRef outside, NodeRef up, const Pitch& pitch);
+/// The signed distance to the plane that rises inward of `outside` = −inset from `up` = rise. Sine and cosine that `at`
+/// knows aren't looked for in the graph.
+NodeRef slopePlane(NodeRef outside, NodeRef up, const Pitch& pitch, const Foot& at);
 /// Slopes of at least the least of the pitches go down to the overhang.
 Foot footOf(const PlanField& plan, const RoofFoot& foot, std::span<const Quantity> pitches);
 /// `sides` above the roof's lower end, with bounds up to `height` metres above the eaves.

@@ -13,17 +13,24 @@ namespace roof_parts {
 
 NodeRef tangent(NodeRef angle) { return sin(angle) / cos(angle); }
 
-NodeRef slopePlane(NodeRef outside, NodeRef up, const Pitch& pitch) {
+NodeRef slopePlane(NodeRef outside, NodeRef up, const Pitch& pitch, const Foot& at) {
+    if (at.knows(pitch.angle)) return (up - pitch.rise.node) * at.cosine + (outside + pitch.inset.node) * at.sine;
     return (up - pitch.rise.node) * cos(pitch.angle.node) + (outside + pitch.inset.node) * sin(pitch.angle.node);
 }
 
 Foot footOf(const PlanField& plan, const RoofFoot& foot, std::span<const Quantity> pitches) {
-    Foot result{plan.position().y - foot.eaves.node, {}, 0, foot.fascia.value > 0};
+    Foot result;
+    result.up = plan.position().y - foot.eaves.node;
+    result.hasFascia = foot.fascia.value > 0;
     if (foot.overhang.value <= 0 || pitches.empty()) {
         result.drop = plan.graph().literal(0);
         return result;
     }
     NodeRef least = tangent(pitches[0].node);
+    if (const auto ratio = plan.graph().operands(least.id()); ratio.size() == 2) {
+        result.angle = pitches[0].node, result.hasAngle = true;
+        result.sine = {&plan.graph(), ratio[0].node}, result.cosine = {&plan.graph(), ratio[1].node};
+    }
     double leastValue = std::tan(pitches[0].value);
     NodeId last = pitches[0].node.id();
     for (const Quantity& p : pitches.subspan(1)) {
@@ -40,12 +47,7 @@ Field onFoot(const PlanField& plan, const RoofFoot& foot, const Foot& at, NodeRe
     return plan.boxed(max(sides, -at.drop - at.up), foot.path, bottom, top, foot.overhang.value);
 }
 
-double depthOf(const PlanField& plan) {
-    const auto distances = plan::distancesOf(plan.footprint());
-    const plan::Box2 box = bounds(plan.footprint());
-    const double width = std::min(box.size().x, box.size().z);
-    return -plan::leastInside(plan.formula(), distances, distances, box, 1e-3 * width);
-}
+double depthOf(const PlanField& plan) { return plan.numbers().depth(); }
 
 }  // namespace roof_parts
 
@@ -55,7 +57,7 @@ using namespace roof_parts;
 
 /// Height of the roof's highest point above the eaves: each side's last plane, walls without end.
 double peakOf(const PlanField& plan, std::span<const RoofSide* const> sides) {
-    std::vector<plan::Linear> distances = plan::distancesOf(plan.footprint()), leaves = distances;
+    std::vector<plan::Linear> distances = plan.numbers().distances(), leaves = distances;
     double steepest = 0;
     for (size_t i = 0; i < leaves.size(); ++i) {
         if (sides[i]->pitches.empty()) {
@@ -79,9 +81,9 @@ Field uniformRoof(const PlanField& plan, const RoofFoot& foot, const RoofSide& s
     std::vector<Quantity> angles{side.pitches.front().angle};
     const Foot at = footOf(plan, foot, angles);
     const NodeRef up = at.hasFascia ? at.up - foot.fascia.node : at.up;
-    NodeRef sides = slopePlane(plan.outside(), up, side.pitches[0]);
+    NodeRef sides = slopePlane(plan.outside(), up, side.pitches[0], at);
     for (size_t i = 1; i < side.pitches.size(); ++i)
-        sides = max(sides, slopePlane(plan.outside(), up, side.pitches[i]));
+        sides = max(sides, slopePlane(plan.outside(), up, side.pitches[i], at));
     if (at.hasFascia) sides = max(sides, plan.outside() - foot.overhang.node);
     const Pitch& last = side.pitches.back();
     const double height =
@@ -131,9 +133,9 @@ Field roof(const PlanField& plan, const RoofFoot& foot, std::span<const RoofSide
         const NodeRef d = plan.distance(edge);
         const RoofSide& side = *chosen[edge];
         const bool hasWall = side.pitches.empty() || at.hasFascia || side.pitches.front().rise.value > 0;
-        NodeRef value = hasWall ? d - foot.overhang.node : slopePlane(d, up, side.pitches[0]);
+        NodeRef value = hasWall ? d - foot.overhang.node : slopePlane(d, up, side.pitches[0], at);
         for (size_t k = hasWall ? 0 : 1; k < side.pitches.size(); ++k)
-            value = max(value, slopePlane(d, up, side.pitches[k]));
+            value = max(value, slopePlane(d, up, side.pitches[k], at));
         return value;
     });
     return onFoot(plan, foot, at, sidesValue, peakOf(plan, chosen) + foot.fascia.value);

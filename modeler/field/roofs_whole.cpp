@@ -85,7 +85,7 @@ Field butterflyRoof(const PlanField& plan, const RoofFoot& foot, Quantity pitch,
 
 Field pyramidRoof(const PlanField& plan, const RoofFoot& foot, Quantity height) {
     const plan::Vec2 apex = centroid(plan.footprint());
-    const auto distances = plan::distancesOf(plan.footprint());
+    const auto distances = plan.numbers().distances();
     const bool seen =
         std::all_of(distances.begin(), distances.end(), [&](const plan::Linear& d) { return d.at(apex) < -1e-6; });
     const auto pitchFor = [&](uint64_t edge, double depth) {

@@ -26,5 +26,7 @@ struct Placed {
 Placed placed(const Point& p);
 /// The exact distance to the scope's box.
 NodeRef boxDistance(const Point& p, const Point& half);
+/// The same where the scope's centre isn't the origin, without nodes for the differences.
+NodeRef boxDistance(const Point& p, const Point& centre, const Point& half);
 
 }  // namespace sgm::field::solids

@@ -52,7 +52,12 @@ Placed placed(const Point& p) {
 
 NodeRef boxDistance(const Point& p, const Point& half) {
     const auto [q, c] = placed(p);
-    return p.x.graph().apply(codeOf<ops::Box>, {q.x, q.y, q.z, c.x, c.y, c.z, half.x, half.y, half.z});
+    return boxDistance(q, c, half);
+}
+
+NodeRef boxDistance(const Point& p, const Point& c, const Point& half) {
+    p.x.graph().literal(0);  // as old as the first box, for operands that commute are ordered by age
+    return p.x.graph().apply(codeOf<ops::Box>, {p.x, p.y, p.z, c.x, c.y, c.z, half.x, half.y, half.z});
 }
 
 Field cube(const PrimitiveInput& in) { return {boxDistance(in.p, in.half), scopeBox(in), 1, growth(1)}; }

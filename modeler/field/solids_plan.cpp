@@ -84,13 +84,13 @@ std::vector<uint32_t> gablesOf(const plan::Footprint& footprint, const plan::For
     return found;
 }
 
-double heightOver(const Primitive& row, const plan::Footprint& footprint, const plan::Formula& formula,
+double heightOver(const Primitive& row, const std::shared_ptr<const PlanNumbers>& numbers,
                   std::span<const Argument> arguments) {
     Graph graph;
     std::vector<Argument> own(arguments.begin(), arguments.end());
     for (Argument& a : own)
         for (int i = 0; i < 9; ++i) a.node[i] = graph.literal(static_cast<float>(a.value[i]));
-    const PlanField plan(footprint, formula, graph.position(), 0);
+    const PlanField plan(numbers, graph);
     const NodeRef half = graph.literal(0.5f);
     const Field f = row.build({graph.position(), {half, half, half}, {.5, .5, .5}, own, &plan, 0});
     return f.bounds.empty() ? 0 : std::max(0.0, static_cast<double>(f.bounds.hi.y) + .5);

@@ -44,7 +44,68 @@ std::optional<Error> tooDeep(std::string_view bytes) {
     return {};
 }
 
+/// Goes through the brackets, commas and texts of a file, and notes where its features begin and end.
+class Splitter {
+public:
+    explicit Splitter(std::string_view bytes) : bytes_(bytes) {}
+
+    std::optional<SplitFile> run() {
+        for (; at_ < bytes_.size(); ++at_) {
+            const char c = bytes_[at_];
+            if (c == '"')
+                skipText();
+            else if (c == '[' || c == '{')
+                open(c);
+            else if (c == ']' || c == '}')
+                close();
+            else if (c == ',' && depth_ == 2 && isInFeatures_)
+                endFeature();
+        }
+        if (lists_ != 1 || isInFeatures_ || depth_ != 0) return {};
+        const std::string_view before = bytes_.substr(0, begin_), after = bytes_.substr(end_);
+        return SplitFile{fmt::format("{}0{}", before, after), std::move(features_)};
+    }
+
+private:
+    void skipText() {
+        const size_t from = ++at_;
+        while (at_ < bytes_.size() && bytes_[at_] != '"') at_ += bytes_[at_] == '\\' ? 2 : 1;
+        if (depth_ == 1 && at_ < bytes_.size()) latest_ = bytes_.substr(from, at_ - from), afterLatest_ = at_ + 1;
+    }
+    void open(char c) {
+        if (++depth_ != 2 || c != '[' || latest_ != "features") return;
+        const std::string_view between = bytes_.substr(afterLatest_, at_ - afterLatest_);
+        if (between.find(':') == between.npos || between.find_first_not_of(" \t\r\n:") != between.npos) return;
+        isInFeatures_ = true;
+        ++lists_;
+        begin_ = feature_ = at_ + 1;
+    }
+    void close() {
+        if (--depth_ != 1 || !isInFeatures_) return;
+        endFeature();
+        isInFeatures_ = false;
+        end_ = at_;
+    }
+    void endFeature() {
+        features_.push_back(bytes_.substr(feature_, at_ - feature_));
+        feature_ = at_ + 1;
+    }
+
+    const std::string_view bytes_;
+    size_t at_ = 0;
+    int depth_ = 0, lists_ = 0;
+    bool isInFeatures_ = false;
+    std::string_view latest_;  ///< text of the outermost object
+    size_t afterLatest_ = 0, begin_ = 0, end_ = 0, feature_ = 0;
+    std::vector<std::string_view> features_;
+};
+
 }  // namespace
+
+std::optional<SplitFile> splitFeatures(std::string_view bytes) {
+    if (tooDeep(bytes)) return {};
+    return Splitter(bytes).run();
+}
 
 std::string textOf(const Json& value) { return shortened(printable(value.get_ref<const std::string&>()), longestText); }
 

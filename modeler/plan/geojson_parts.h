@@ -18,6 +18,16 @@ inline constexpr size_t longestText = 4096;  ///< of a property, bytes
 /// The file as JSON. Error::Input with the line, or where lists nest too deep.
 Result<nlohmann::json> parseGeoJson(std::string_view bytes);
 
+/// A file whose features can be read one by one, from any thread.
+struct SplitFile {
+    std::string rest;                        ///< the file with one number in place of its features
+    std::vector<std::string_view> features;  ///< each by itself, in the file's order
+};
+/// Splits the list "features" of a file's outermost object. Nothing where there is no such list, or more than one, or
+/// where the text can't be JSON: then the file is read as a whole, which says what is wrong with it. What is left and
+/// all features are JSON where, and only where, the file is. O(bytes), of which it reads each once.
+std::optional<SplitFile> splitFeatures(std::string_view bytes);
+
 /// A text without what can't be printed, shortened.
 std::string textOf(const nlohmann::json& value);
 /// A member that is a text, or "".

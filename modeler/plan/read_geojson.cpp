@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "modeler/core/parallel.h"
 #include "modeler/core/printable.h"
 #include "modeler/plan/geojson_parts.h"
 #include "modeler/plan/read_parts.h"
@@ -140,35 +141,98 @@ Result<Plane> layOnPlane(Features& features, bool isPlane, double farthest_m) {
     return plane;
 }
 
-}  // namespace
+/// Reads the features of a file by themselves, on all threads. False where one of them, or what is left of the file, is
+/// no JSON: then nothing was read.
+bool readSplit(const SplitFile& file, Reading& reading, std::optional<Error>& error) {
+    struct One {
+        bool isJson = false;
+        size_t points = 0;
+        Features features{};  ///< one at most
+        std::optional<Error> error{};
+    };
+    std::vector<One> all(file.features.size());
+    constexpr size_t together = 32;
+    const auto read = [&](size_t i) {
+        Reading own{reading.limits, reading.progress, ReadBudget(reading.limits), {}, i};
+        const Json object = Json::parse(file.features[i], nullptr, false);
+        all[i].isJson = !object.is_discarded();
+        if (all[i].isJson) all[i].error = readFeature(object, own);
+        all[i].points = own.budget.points();
+        all[i].features = std::move(own.features);
+    };
+    parallelFor((all.size() + together - 1) / together, 0, reading.progress, [&](size_t chunk, int) {
+        for (size_t i = chunk * together; i < std::min((chunk + 1) * together, all.size()); ++i) read(i);
+    });
+    if (cancelled(reading.progress)) return error = cancelledError(), true;
+    if (!std::all_of(all.begin(), all.end(), [](const One& one) { return one.isJson; })) return false;
+    for (One& one : all) {
+        error = reading.budget.addPoints(one.points);
+        if (!error) error = one.error;
+        if (!error && !one.features.list.empty()) error = reading.budget.addFeature();
+        if (error) return true;
+        for (Feature& feature : one.features.list) reading.features.list.push_back(std::move(feature));
+    }
+    return true;
+}
 
-Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits, const Progress* progress) {
-    if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Budget, "it is too large"};
-    const Result<Json> parsed = parseGeoJson(bytes);
+/// Reads a file feature by feature where that can be, else as a whole. Gives what is left of it beside its features.
+Result<Json> readFeatures(std::string_view bytes, Reading& reading) {
+    if (const auto split = splitFeatures(bytes)) {
+        Json rest = Json::parse(split->rest, nullptr, false);
+        const bool isSplit = rest.is_object() && member(rest, "type") == "FeatureCollection" &&
+                             rest["features"].is_array() && rest["features"].size() == 1;
+        std::optional<Error> error;
+        if (isSplit && readSplit(*split, reading, error)) return error ? Result<Json>(*error) : std::move(rest);
+    }
+    Result<Json> parsed = parseGeoJson(bytes);
     if (!parsed.ok()) return parsed.error();
     const Json& root = *parsed;
-    Reading reading{limits, progress, ReadBudget(limits)};
     const auto list = root.is_object() ? root.find("features") : root.end();
     if (member(root, "type") == "FeatureCollection" && list != root.end() && list->is_array()) {
         for (const Json& object : *list) {
-            if (cancelled(progress)) return cancelledError();
+            if (cancelled(reading.progress)) return cancelledError();
             if (auto e = readFeature(object, reading)) return *e;
         }
     } else if (auto e = readFeature(root, reading)) {
         return *e;
     }
+    return parsed;
+}
+
+/// Makes outlines sound, on all threads; the first feature's error that can't be.
+std::optional<Error> makeSound(Reading& reading, const Plane& plane) {
+    std::vector<Feature>& list = reading.features.list;
+    std::vector<std::optional<Error>> errors(list.size());
+    constexpr size_t together = 32;
+    parallelFor((list.size() + together - 1) / together, 0, reading.progress, [&](size_t chunk, int) {
+        for (size_t i = chunk * together; i < std::min((chunk + 1) * together, list.size()); ++i) {
+            std::optional<Fault> repaired;
+            Result<Footprint> sound = soundFootprint(list[i].footprint, reading.limits.footprint, &repaired);
+            if (!sound) {
+                errors[i] = damaged("feature", list[i].place, sound.error());
+                continue;
+            }
+            if (repaired) list[i].fault = repairText(*repaired, plane.inFile(repaired->at));
+            list[i].footprint = *std::move(sound);
+        }
+    });
+    if (cancelled(reading.progress)) return cancelledError();
+    const auto first = std::find_if(errors.begin(), errors.end(), [](const auto& e) { return e.has_value(); });
+    return first == errors.end() ? std::nullopt : *first;
+}
+
+}  // namespace
+
+Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits, const Progress* progress) {
+    if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Budget, "it is too large"};
+    Reading reading{limits, progress, ReadBudget(limits)};
+    const Result<Json> rest = readFeatures(bytes, reading);
+    if (!rest.ok()) return rest.error();
     if (reading.features.list.empty())
         return Error{Error::Kind::Input, "it has no polygons; GeoJSON's Polygon and MultiPolygon are read"};
-    const auto plane = layOnPlane(reading.features, namesPlane(root), limits.footprint.farthest_m);
+    const auto plane = layOnPlane(reading.features, namesPlane(*rest), limits.footprint.farthest_m);
     if (!plane) return plane.error();
-    for (Feature& feature : reading.features.list) {
-        if (cancelled(progress)) return cancelledError();
-        std::optional<Fault> repaired;
-        Result<Footprint> sound = soundFootprint(feature.footprint, limits.footprint, &repaired);
-        if (!sound) return damaged("feature", feature.place, sound.error());
-        if (repaired) feature.fault = repairText(*repaired, plane->inFile(repaired->at));
-        feature.footprint = *std::move(sound);
-    }
+    if (auto e = makeSound(reading, *plane)) return *e;
     return std::move(reading.features);
 }
 

@@ -15,6 +15,7 @@ public:
     /// An error where one feature more, or so many points more, are too many.
     std::optional<Error> addFeature();
     std::optional<Error> addPoints(size_t count);
+    size_t points() const { return points_; }
 
 private:
     const ReadLimits& limits_;

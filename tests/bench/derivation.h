@@ -1,6 +1,6 @@
 // What comes before the tape costs: derivation, lowering and compiling of large walls, plans from files, L-systems.
-// Enters: grammars that are written here. Leaves: processor time and memory beside what is asked for. Assumes one
-// thread.
+// Enters: grammars that are written here. Leaves: times and memory beside what is asked for. Assumes a machine that is
+// calm where several threads share the work, for then the wall's time counts.
 #pragma once
 
 #include <string>
@@ -24,7 +24,8 @@ struct WallCase {
 struct WallCosts {
     WallCase what;
     size_t shapes = 0, terminals = 0, tape = 0;
-    double derive_s = 0, lower_s = 0, compile_s = 0, mesh_s = 0;  ///< processor time, the least of some runs
+    double derive_s = 0, lower_s = 0, compile_s = 0, mesh_s = 0;  ///< processor time of one thread, the least of runs
+    double lowerShared_s = 0;                                     ///< by the wall, on all threads
     double bytesPerShape = 0;                                     ///< of the tree and the log
     double shapesPerSecond() const { return derive_s > 0 ? static_cast<double>(shapes) / derive_s : 0; }
 };

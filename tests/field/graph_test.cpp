@@ -96,6 +96,62 @@ TEST(Graph, NodesAreOneWhereTheirContentsAre) {
     }
 }
 
+/// Boxes of a row, set in any order, are those that are made one by one, and are found again.
+TEST(Graph, BoxesOfARowAreThoseMadeOneByOne) {
+    constexpr size_t count = 50;
+    const auto boxAt = [](size_t i) {
+        Graph::Box box{mix(i), {}};
+        for (size_t k = 0; k < box.numbers.size(); ++k) box.numbers[k] = static_cast<float>(10 * i + k);
+        return box;
+    };
+    Graph single, row;
+    std::vector<NodeRef> boxes;
+    const auto makeOne = [](Graph& g, const Graph::Box& box) {
+        const auto n = g.slots(box.path, Graph::boxAttributes, box.numbers);
+        return g.apply(codeOf<ops::Box>, {g.x(), g.y(), g.z(), n[0], n[1], n[2], n[3], n[4], n[5]});
+    };
+    for (Graph* g : {&single, &row}) EXPECT_EQ(min(g->position().x, sqrt(g->position().z)).id(), 4u);
+    single.y(), row.y();
+    for (size_t i = 0; i < count; ++i) boxes.push_back(makeOne(single, boxAt(i)));
+    const NodeId first = row.addBoxes(count);
+    for (size_t i = count; i-- > 0;) row.setBox(first, i, row.position(), boxAt(i));
+    for (Graph* g : {&single, &row}) min(g->x(), NodeRef(g, boxes[7].id()));  // both go on
+    ASSERT_EQ(row.nodeCount(), single.nodeCount());
+    for (NodeId id = 0; id < row.nodeCount(); ++id) {
+        EXPECT_EQ(row.node(id).op, single.node(id).op) << id;
+        EXPECT_EQ(row.node(id).data, single.node(id).data) << id;
+        EXPECT_TRUE(std::equal(row.operands(id).begin(), row.operands(id).end(), single.operands(id).begin(),
+                               single.operands(id).end()))
+            << id;
+    }
+    EXPECT_TRUE(std::equal(row.slotKeys().begin(), row.slotKeys().end(), single.slotKeys().begin()));
+    EXPECT_TRUE(std::equal(row.constants().begin(), row.constants().end(), single.constants().begin()));
+    const size_t nodes = row.nodeCount();
+    for (size_t i = 0; i < count; ++i) EXPECT_EQ(makeOne(row, boxAt(i)).id(), boxes[i].id());
+    EXPECT_EQ(row.nodeCount(), nodes);
+    EXPECT_EQ(row.constants().size(), count * Graph::boxAttributes.size());
+}
+
+/// A path that was said to be new has its slots found like any other's, also once others came between.
+TEST(Graph, SlotsOfABegunPathAreFoundAgain) {
+    Graph g;
+    std::vector<NodeId> slots;
+    const auto slotsOf = [&](uint64_t path, auto&& fn) {
+        for (uint64_t attribute = 0; attribute < 70; ++attribute) fn(g.slot({mix(path), mix(attribute)}, 1.0f));
+    };
+    for (uint64_t path = 0; path < 20; ++path) {
+        if (path % 2 == 0) g.beginPath(mix(path));
+        slotsOf(path, [&](NodeRef slot) { slots.push_back(slot.id()); });
+        const uint64_t before = path / 2;
+        EXPECT_EQ(g.slot({mix(before), mix(3)}, 1.0f).id(), slots[before * 70 + 3]);
+    }
+    g.beginPath(mix(100));  // and never asked for
+    ASSERT_EQ(g.constants().size(), slots.size());
+    size_t at = 0;
+    for (uint64_t path = 0; path < 20; ++path) slotsOf(path, [&](NodeRef slot) { EXPECT_EQ(slot.id(), slots[at++]); });
+    EXPECT_EQ(g.constants().size(), slots.size());
+}
+
 TEST(Graph, StructureSurvivesANewNumber) {
     Graph g;
     const NodeRef before = g.x() * g.slot({1, 2}, 5);

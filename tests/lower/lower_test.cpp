@@ -1,6 +1,12 @@
 // Lowering: the order of combination, owners, materials, slots; seen by evaluating fields at points.
 #include "grammar/lower/lower.h"
 
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "modeler/core/random.h"
+#include "modeler/field/plan_numbers.h"
 #include "tests/cpu_time.h"
 #include "tests/lower/lowered.h"
 
@@ -231,6 +237,89 @@ TEST(Determinism, EqualDerivationsGiveEqualGraphs) {
     }
     EXPECT_TRUE(std::equal(a.model->graph.constants().begin(), a.model->graph.constants().end(),
                            b.model->graph.constants().begin()));
+}
+
+/// Boxes are made by several threads, chunk by chunk; solids of other kinds, rotations and cuts lie between them.
+TEST(Determinism, NothingOfTheThreadsShowsInAModel) {
+    const auto d = derived(
+        "grammar 2\nterminal brick, glass\n"
+        "start City -> for k in 1..3 { Wall size (150m, 120m, .5m) turn (20deg * k) move (0, 0, 9m * k) }\n"
+        "rule Wall -> split y { { ~.9m: split x { { ~1m: Tile }* } }* }\n"
+        "rule Tile weight 30 -> split x { ~.2: brick | ~1: glass }\n"
+        "rule Tile weight 1 -> brick + sphere size (.3m, .3m, .3m) at +z\n"
+        "rule Tile weight 1 -> brick - cube size (.3m, .3m, 1m)\n");
+    ASSERT_GT(d.terminals(), 60'000u);
+    const auto one = lower::lower(d, nullptr, 1);
+    ASSERT_TRUE(one.ok()) << one.error().message;
+    const field::Graph& expected = (*one)->graph;
+    for (const int threads : {2, 3, 0}) {
+        const auto many = lower::lower(d, nullptr, threads);
+        ASSERT_TRUE(many.ok());
+        const field::Graph& graph = (*many)->graph;
+        ASSERT_EQ(graph.nodeCount(), expected.nodeCount());
+        ASSERT_EQ((*many)->field.value.id(), (*one)->field.value.id());
+        for (field::NodeId i = 0; i < graph.nodeCount(); ++i) {
+            ASSERT_EQ(graph.node(i).op, expected.node(i).op);
+            ASSERT_EQ(graph.node(i).data, expected.node(i).data);
+            ASSERT_TRUE(std::equal(graph.operands(i).begin(), graph.operands(i).end(), expected.operands(i).begin(),
+                                   expected.operands(i).end()));
+        }
+        EXPECT_TRUE(std::equal(graph.constants().begin(), graph.constants().end(), expected.constants().begin()));
+        EXPECT_TRUE(std::equal(graph.slotKeys().begin(), graph.slotKeys().end(), expected.slotKeys().begin()));
+        EXPECT_EQ((*many)->shapeOf, (*one)->shapeOf);
+        const auto &parts = (*many)->provenance.parts, &expectedParts = (*one)->provenance.parts;
+        ASSERT_EQ(parts.size(), expectedParts.size());
+        for (size_t i = 0; i < parts.size(); i += 97) {
+            EXPECT_EQ(parts[i].path, expectedParts[i].path);
+            EXPECT_EQ(parts[i].pose, expectedParts[i].pose);
+            EXPECT_EQ(parts[i].material, expectedParts[i].material);
+        }
+    }
+}
+
+/// A box's numbers stand in the slots of its own shape, and its part is its own, wherever it lies in a row.
+TEST(Slots, EveryBoxHasThoseOfItsShape) {
+    const auto d = derived(
+        "grammar 2\nterminal brick, glass\nstart Wall -> Front size (90m, 60m, .5m) turn 30deg\n"
+        "rule Front -> split y { { ~1m: split x { { ~.9m: brick | .3m: glass }* } }* }\n");
+    auto model = lower::lower(d, nullptr);
+    ASSERT_TRUE(model.ok());
+    const field::Graph& graph = (*model)->graph;
+    std::map<std::pair<uint64_t, uint64_t>, float> values;
+    for (size_t slot = 0; slot < graph.constants().size(); ++slot) {
+        const field::SlotKey key = graph.slotKeys()[slot];
+        EXPECT_TRUE(values.try_emplace({key.path, key.attribute}, graph.constants()[slot]).second) << slot;
+    }
+    ASSERT_EQ((*model)->shapeOf.size(), d.terminals() + 1);
+    for (size_t part = 1; part < (*model)->shapeOf.size(); ++part) {
+        const derive::Shape& shape = d.tree.shapes[(*model)->shapeOf[part]];
+        const Vec3f half = shape.scope.half().as<float>();
+        EXPECT_EQ(values.at({shape.key, hashText("size.x")}), half.x);
+        EXPECT_EQ(values.at({shape.key, hashText("size.y")}), half.y);
+        EXPECT_EQ(values.at({shape.key, hashText("size.z")}), half.z);
+        EXPECT_EQ((*model)->provenance.parts[part].pose.origin, shape.scope.centre);
+    }
+}
+
+/// Derivation searches the depth of a roof's plan for its height; lowering gets that of its own plan and formula.
+TEST(Roofs, TheirDepthsAreKnownFromTheirHeights) {
+    const auto d = derived(
+        "grammar 2\nterminal wall\n"
+        "start Row -> for k in 1..5 { House footprint ell(15 + k, 12, 5, 5) extrude 4m move (30m * k, 0, 0) }\n"
+        "rule House -> wall + hipRoof(35deg, overhang: .4m) at +y\n");
+    const derive::Footprints& footprints = d.tree.footprints;
+    size_t roofs = 0;
+    for (const derive::Shape& shape : d.tree.shapes) {
+        if (shape.solid == derive::none || d.tree.solids[shape.solid].primitive->name != "hipRoof") continue;
+        const Vec3d half = shape.scope.half();
+        const plan::Footprint plan = footprints.inMetres(shape.scope.footprint, half);
+        const auto depth_m = footprints.knownDepth(shape.scope.footprint, half);
+        ASSERT_TRUE(depth_m);
+        EXPECT_EQ(*depth_m, field::PlanNumbers(plan, footprints[shape.scope.footprint].formula).depth());
+        EXPECT_FALSE(footprints.knownDepth(shape.scope.footprint, half * 2));
+        ++roofs;
+    }
+    EXPECT_EQ(roofs, 5u);
 }
 
 TEST(Order, NothingIsSharedWithTheEmptyShape) {

@@ -1,6 +1,7 @@
 // Outlines from files: what is read, and that damaged files are errors with a place.
 #include "modeler/plan/read.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "modeler/plan/formula.h"
@@ -117,6 +118,63 @@ TEST(GeoJson, BoundsHold) {
     Progress stop;
     stop.cancel();
     EXPECT_EQ(readGeoJson(collection(featureText(square)), {}, &stop).error().kind, Error::Kind::Cancelled);
+}
+
+/// Features are read by themselves: brackets, quotes and lists of that name elsewhere mislead nobody.
+TEST(GeoJson, FeaturesOfAListAreReadOneByOne) {
+    const auto squareAt = [](int x) {
+        return fmt::format("[[[{0},0],[{1},0],[{1},20],[{0},20]]]", 1000 + 20 * x, 1010 + 20 * x);
+    };
+    std::string features;
+    for (int i = 0; i < 200; ++i)
+        features += (i ? " ,\n" : "\n") +
+                    featureText(squareAt(i), R"({"name\\":"]}, \"features\":[","features":[{"a":[1,2]},3],"n":)" +
+                                                 std::to_string(i) + "}");
+    const std::string crs = R"("crs":{"type":"name","properties":{"name":"metres"}})";
+    const std::string texts[] = {
+        R"({"type":"FeatureCollection",)" + crs + R"(,"features" : [)" + features + "]}",
+        R"({"features":[)" + features + R"(], "type":"FeatureCollection","more":{"features":[7]},)" + crs + "}",
+        R"({"features":[1],"features":[)" + features + R"(],"type":"FeatureCollection",)" + crs + "}"};
+    for (const std::string& text : texts) {
+        const auto f = readGeoJson(text);
+        ASSERT_TRUE(f.ok()) << f.error().message;
+        ASSERT_EQ(f->list.size(), 200u);
+        EXPECT_FALSE(f->fromDegrees);
+        for (size_t i = 0; i < 200; ++i) {
+            EXPECT_EQ(f->list[i].place, i + 1);
+            EXPECT_EQ(std::get<double>(*f->list[i].find("n")), static_cast<double>(i));
+            EXPECT_EQ(bounds(f->list[i].footprint).lo.x, bounds(f->list[0].footprint).lo.x + 20. * double(i));
+        }
+    }
+}
+
+/// What is wrong is told as of the whole file: its line, or the first feature at fault.
+TEST(GeoJson, FaultsOfAListAreThoseOfTheFile) {
+    const auto messageOf = [](const std::string& text, const ReadLimits& limits = {}) {
+        const auto f = readGeoJson(text, limits);
+        return f.ok() ? std::string("no error") : f.error().message;
+    };
+    const std::string good = featureText(square), lame = featureText("[[[0,0],[1000,1]]]");
+    const auto list = [&](const std::string& between) { return collection(good + ",\n" + between + ",\n" + good); };
+    EXPECT_EQ(messageOf(list("{]")), "line 2: this is no JSON");
+    EXPECT_EQ(messageOf(list("")), "line 2: this is no JSON");
+    EXPECT_EQ(messageOf(list(good + " " + good)), "line 2: this is no JSON");
+    EXPECT_EQ(messageOf(list(good) + "}"), "line 3: this is no JSON");
+    EXPECT_EQ(messageOf(list("1e999")), "a number is too large");
+    EXPECT_EQ(messageOf(R"({"type":"FeatureCollection","features":[)" + good + ",\n" + good + "}}"),
+              "line 2: this is no JSON");
+    EXPECT_EQ(messageOf(R"({"type":"FeatureCollection","features":[ ]})"),
+              "it has no polygons; GeoJSON's Polygon and MultiPolygon are read");
+    EXPECT_EQ(messageOf(list(lame + "," + featureText("7"))), "feature 2: a ring has fewer than three points");
+    EXPECT_EQ(messageOf(list(featureText("7") + "," + lame)), "feature 2: a polygon has no coordinates");
+    ReadLimits few;
+    few.mostPoints = 7;  // of 5, 2 and 5
+    EXPECT_EQ(messageOf(list(lame), few), "feature 2: a ring has fewer than three points");
+    few.mostPoints = 6;
+    EXPECT_EQ(messageOf(list(lame), few), "it has more than 6 points");
+    few = {};
+    few.mostFeatures = 2;
+    EXPECT_EQ(messageOf(list(good), few), "it has more than 2 features");
 }
 
 TEST(GeoJson, PlansOfMetresTakenForDegreesAreToldAsSuch) {
