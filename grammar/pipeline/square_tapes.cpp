@@ -10,18 +10,30 @@ namespace {
 
 using tiles::Cell;
 
-/// Instructions of a tape whose trace is kept for all quarters, a few megabytes.
-constexpr size_t longTape = 1 << 17;
+/// Instructions from which on a tape has no trace kept, of some 200 bytes each for the four quarters.
+constexpr size_t longTape = 1 << 15;
+constexpr int splitLevels = 3;               ///< that a long tape is cut across: to eight by eight squares
+constexpr int mostAlong = 1 << splitLevels;  ///< squares
 
-/// The tape without what can't matter in a box. What that takes besides the result is gone afterwards.
-eval::Tape shortenedOnce(const eval::Tape& tape, const Box3f& box) {
-    eval::Workspace workspace;
+/// The tape without what can't matter in a box. What that takes besides the result is gone afterwards where it is much.
+eval::Tape shortened(const eval::Tape& tape, const Box3f& box, eval::Workspace& workspace) {
+    std::optional<eval::Workspace> own;
+    if (tape.size() > longTape) own.emplace();
+    eval::Workspace& w = own ? *own : workspace;
     eval::FloatInterval range;
-    const eval::RangeTrace trace = eval::evaluateRanges(tape, {&box, 1}, &range, workspace);
-    return eval::shorten(tape, trace, 0, workspace);
+    const eval::RangeTrace trace = eval::evaluateRanges(tape, {&box, 1}, &range, w);
+    return eval::shorten(tape, trace, 0, w);
+}
+
+Cell ancestorOf(Cell cell, int level) {
+    while (cell.level < level) cell = cell.parent();
+    return cell;
 }
 
 }  // namespace
+
+SquareTapes::SquareTapes(const eval::Tape& whole, const Box3f& bounds, double finest_m, const Margins& margins)
+    : whole_(whole), bounds_(bounds), finest_m_(finest_m), margins_(margins) {}
 
 Box3f SquareTapes::boxOf(const Cell& square) const {
     const double margin = margins_.finest_m * (1 << std::min(square.level, margins_.doublings));
@@ -32,9 +44,33 @@ Box3f SquareTapes::boxOf(const Cell& square) const {
             {static_cast<float>(centre.x + reach), bounds_.hi.y + lift, static_cast<float>(centre.z + reach)}};
 }
 
+bool SquareTapes::Cuts::has(const Cell& square) const {
+    return square.level == level && square.x >= x && square.x < x + along && square.z >= z && square.z < z + across;
+}
+
+SquareTapes::Cuts SquareTapes::cutsOf(const eval::Tape& tape, const Cell& from, const Cell& to,
+                                      eval::Workspace& workspace) const {
+    std::vector<Box3f> boxes;
+    for (int z = from.z; z <= to.z; ++z)
+        for (int x = from.x; x <= to.x; ++x) boxes.push_back(boxOf({from.level, x, z}));
+    return {from.level,
+            from.x,
+            from.z,
+            to.x - from.x + 1,
+            to.z - from.z + 1,
+            eval::RegionCuts(tape, {boxes.data(), boxes.size()}, workspace)};
+}
+
+/// A square's tape from that of a larger one: what is cut off first is whole parts.
+eval::Tape SquareTapes::cut(const eval::Tape& tape, const Cuts& cuts, const Cell& square,
+                            eval::Workspace& workspace) const {
+    if (cuts.cuts.empty() || !cuts.has(square)) return shortened(tape, boxOf(square), workspace);
+    const int index = (square.z - cuts.z) * cuts.along + square.x - cuts.x;
+    return shortened(cuts.cuts.cut(tape, static_cast<size_t>(index), workspace), boxOf(square), workspace);
+}
+
 /// The tape of a quarter of a step's square. Quarters come one after the other: one pass over the tape serves all four.
 eval::Tape SquareTapes::quarterOf(Step& around, const Cell& quarter, eval::Workspace& workspace) const {
-    if (around.tape.size() > longTape) return shortenedOnce(around.tape, boxOf(quarter));
     if (!around.trace) {
         const Cell& square = around.square;
         std::array<Box3f, 4> boxes;
@@ -47,18 +83,42 @@ eval::Tape SquareTapes::quarterOf(Step& around, const Cell& quarter, eval::Works
                          workspace);
 }
 
-const eval::Tape& SquareTapes::over(const Cell& square, eval::Workspace& workspace) {
-    const double extent = static_cast<double>(std::max(bounds_.hi.x - bounds_.lo.x, bounds_.hi.z - bounds_.lo.z));
-    std::vector<Cell> way{square};
-    while (way.back().side_m(finest_m_) < extent / 2) way.push_back(way.back().parent());
-    std::reverse(way.begin(), way.end());
-    size_t kept = 0;
-    while (kept < std::min(way.size(), path_.size()) && path_[kept].square == way[kept]) ++kept;
-    path_.resize(kept);
-    for (size_t i = kept; i < way.size(); ++i) {
-        eval::Tape tape = i == 0 ? shortenedOnce(whole_, boxOf(way[0])) : quarterOf(path_[i - 1], way[i], workspace);
-        path_.push_back({way[i], std::move(tape), std::nullopt});
+/// The square around another one that is cut from the whole tape.
+SquareTapes::Step SquareTapes::first(const Cell& square, eval::Workspace& workspace) {
+    if (!ofWhole_) {
+        const auto at = [&](float x, float z) {
+            return ancestorOf(tiles::cellAt(static_cast<double>(x), static_cast<double>(z), finest_m_),
+                              margins_.doublings);
+        };
+        Cell from = at(bounds_.lo.x, bounds_.lo.z), to = at(bounds_.hi.x, bounds_.hi.z);
+        while (to.x - from.x >= mostAlong || to.z - from.z >= mostAlong) from = from.parent(), to = to.parent();
+        ofWhole_ = cutsOf(whole_, from, to, workspace);
     }
+    const Cell top = ancestorOf(square, ofWhole_->level);
+    return {top, cut(whole_, *ofWhole_, top, workspace), {}, {}};
+}
+
+/// The next square on the way from a larger one to one in it.
+SquareTapes::Step SquareTapes::below(Step& around, const Cell& square, eval::Workspace& workspace) const {
+    const Cell& from = around.square;
+    if (around.tape.size() <= longTape) {
+        const Cell quarter = ancestorOf(square, from.level - 1);
+        return {quarter, quarterOf(around, quarter, workspace), {}, {}};
+    }
+    const int level = std::max(from.level - splitLevels, std::min(from.level - 1, margins_.doublings));
+    const Cell next = ancestorOf(square, level);
+    if (!around.cuts) {
+        const int along = 1 << (from.level - level);
+        const Cell corner{level, from.x * along, from.z * along};
+        around.cuts = cutsOf(around.tape, corner, {level, corner.x + along - 1, corner.z + along - 1}, workspace);
+    }
+    return {next, cut(around.tape, *around.cuts, next, workspace), {}, {}};
+}
+
+const eval::Tape& SquareTapes::over(const Cell& square, eval::Workspace& workspace) {
+    while (!path_.empty() && ancestorOf(square, path_.back().square.level) != path_.back().square) path_.pop_back();
+    if (path_.empty()) path_.push_back(first(square, workspace));
+    while (path_.back().square.level > square.level) path_.push_back(below(path_.back(), square, workspace));
     return path_.back().tape;
 }
 

@@ -198,7 +198,7 @@ TapeBuilder::Scale Compiler::scaleOf(const field::Field& field) const {
 
 Tape Compiler::write(TapeBuilder::Scale scale) {
     TapeBuilder builder;
-    builder.begin(ordered_.size() + 3);
+    builder.begin(ordered_.size() + 3, ordered_.size());
     for (NodeId id = 0; id <= root_; ++id) {
         if (nodeClasses_[id].kind == NodeClass::Unreached || !isInput(id)) continue;
         nodeClasses_[id].what = static_cast<uint32_t>(ordered_.size()) + graph_.node(id).data;

@@ -71,6 +71,20 @@ Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 void Workspace::tallyInto(Tally* tally) { impl_->tally = tally; }
 
+void Workspace::Impl::setUpRegions(StepContext& c, const Tape& tape, const BoxBatch& regions) {
+    c.count = roundedUp(regions.n);
+    setUp(c, tape, 2, c.count);
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        float *lo = rowOf(c, axis, 2, 0), *hi = rowOf(c, axis, 2, 1);
+        for (size_t i = 0; i < regions.n; ++i) {
+            lo[i] = regions.boxes[i].lo[static_cast<int>(axis)];
+            hi[i] = regions.boxes[i].hi[static_cast<int>(axis)];
+        }
+        std::fill(lo + regions.n, lo + c.count, lo[regions.n - 1]);
+        std::fill(hi + regions.n, hi + c.count, hi[regions.n - 1]);
+    }
+}
+
 void Workspace::Impl::setUpGradients(StepContext& c, const Tape& tape, size_t n) {
     size_t which = 0;
     while (gradientStrides[which] < n) ++which;
@@ -189,17 +203,7 @@ RangeTrace evaluateRanges(const Tape& tape, BoxBatch regions, FloatInterval* out
     Workspace::Impl& w = workspace.impl();
     count(tape, regions.n, EvaluationKind::Range, w.tally);
     StepContext c;
-    c.count = roundedUp(regions.n);
-    w.setUp(c, tape, 2, c.count);
-    for (uint32_t axis = 0; axis < 3; ++axis) {
-        float *lo = rowOf(c, axis, 2, 0), *hi = rowOf(c, axis, 2, 1);
-        for (size_t i = 0; i < regions.n; ++i) {
-            lo[i] = regions.boxes[i].lo[static_cast<int>(axis)];
-            hi[i] = regions.boxes[i].hi[static_cast<int>(axis)];
-        }
-        std::fill(lo + regions.n, lo + c.count, lo[regions.n - 1]);
-        std::fill(hi + regions.n, hi + c.count, hi[regions.n - 1]);
-    }
+    w.setUpRegions(c, tape, regions);
     RangeTrace trace(w.traces);
     RangeTrace::Impl& t = trace.impl();
     t.chains.build(tape);

@@ -6,18 +6,26 @@
 
 namespace sgm::eval {
 
-void TapeBuilder::begin(size_t keys) {
+void TapeBuilder::begin(size_t keys, size_t instructions) {
     if (values_.size() < keys) {
         values_.resize(keys, Value{});
         liveBits_.resize(keys / 64 + 1);
     }
-    if (code_.size() < keys) code_.resize(keys);
+    if (code_.size() < instructions) code_.resize(instructions);
     first_ = code_.size();
     free_.clear();
     sources_.clear();
     origins_.assign(1, 0);  // entry 0 is the owner of the result
     registers_ = 3;
     longest_ = 0;
+}
+
+/// Makes room for more instructions before those that are written: what is left of a tape is often far less than it.
+void TapeBuilder::grow() {
+    std::vector<Instruction> larger(std::max<size_t>(256, 2 * code_.size()));
+    first_ = larger.size() - code_.size();
+    std::copy(code_.begin(), code_.end(), larger.begin() + static_cast<ptrdiff_t>(first_));
+    code_ = std::move(larger);
 }
 
 void TapeBuilder::bindInput(uint32_t key, uint32_t coordinate) {

@@ -34,12 +34,15 @@ public:
         uint32_t chosenInputs;
     };
 
-    /// Starts a tape whose values have keys below `keys`.
-    void begin(size_t keys);
+    /// Starts a tape whose values have keys below `keys`. A key may stand for another value once its own is defined.
+    /// `instructions`: makes room for so many at once.
+    void begin(size_t keys, size_t instructions = 0);
     /// Says that `key` is coordinate 0, 1 or 2; those registers are never given to others.
     void bindInput(uint32_t key, uint32_t coordinate);
     /// The tape's value. First call after begin and bindInput.
     void result(Use use);
+    /// Whether something already written needs the value.
+    bool isLive(uint32_t key) const { return values_[key].reg != none; }
     /// The greatest key below `below` that something already written needs, inputs apart; `none` when there is none.
     uint32_t nextLive(uint32_t below) const;
     /// What of a live value matters to what is written.
@@ -70,11 +73,11 @@ private:
         RelevantRange relevant{};
     };
     Source demand(const Use& use, uint32_t ownerEntry);
-    bool live(uint32_t key) const { return values_[key].reg != none; }
     void enter(uint32_t key, Value v);
     Value leave(uint32_t key);
     uint32_t takeRegister();
     Instruction& begun(uint32_t key, const Instruction& like, size_t count, bool listed);
+    void grow();
 
     LargePageVector<Value> values_;   // all dead between tapes
     std::vector<uint64_t> liveBits_;  // by key, inputs apart
@@ -130,6 +133,7 @@ inline Source TapeBuilder::demand(const Use& use, uint32_t ownerEntry) {
 
 /// The instruction that defines `key`, which is dead from here on; its operands' places are next in the lists.
 inline Instruction& TapeBuilder::begun(uint32_t key, const Instruction& like, size_t count, bool listed) {
+    if (first_ == 0) grow();
     Instruction& in = code_[--first_];
     in = {like.op, static_cast<uint32_t>(count), leave(key).reg, 0, 0, like.data, 0, like.piece};
     free_.push_back(in.out);
@@ -147,7 +151,7 @@ inline void TapeBuilder::alias(uint32_t key, Use same) {
     const bool told = same.origin == 0 || (owner != none && origins_[owner] != 0);
     const bool canTell = owner != none;
     if (!told && canTell) origins_[owner] = same.origin;
-    if (!isConstant(same.source) && !live(same.source) && (told || canTell)) {
+    if (!isConstant(same.source) && (same.source == key || !isLive(same.source)) && (told || canTell)) {
         Value v = leave(key);
         v.relevant = same.relevant;
         enter(same.source, v);

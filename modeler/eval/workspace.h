@@ -136,6 +136,8 @@ struct alignas(128) Workspace::Impl : OwnerRegisters, PathRegisters {
         c.grids = tape.grids() ? tape.grids()->words.data() : nullptr;
         c.arguments = argumentFloats > 0 ? arguments.get(argumentFloats) : nullptr;
     }
+    /// The same for ranges, with the boxes in the registers of coordinates.
+    void setUpRegions(StepContext& c, const Tape& tape, const BoxBatch& regions);
     /// The same for derivatives at n points, n ≤ maxBlock. Strides are few, so that derivatives of coordinates stay
     /// from call to call.
     void setUpGradients(StepContext& c, const Tape& tape, size_t n);
