@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "modeler/tiles/property_table.h"
 #include "modeler/tiles/textures.h"
@@ -246,6 +247,33 @@ Vec3d vectorOf(const Json& node, const char* key, Vec3d fallback) {
     return {node[key][0].get<double>(), node[key][1].get<double>(), node[key][2].get<double>()};
 }
 
+/// What cells take over of a file's JSON, in no more memory than it needs: lists that were read have room to grow.
+Json withoutTheRest(const Json& json) {
+    Json kept;
+    for (const char* key : {"meshes", "accessors", "bufferViews", "materials", "textures", "images"})
+        if (json.contains(key)) kept[key] = json[key];
+    return kept;
+}
+
+Result<Library::Entry> readEntry(const std::filesystem::path& path) {
+    auto read = readGlb(path);
+    if (!read.ok()) return read.error();
+    const Json& json = read->json;
+    if (!json.contains("meshes") || !json.contains("nodes") || !json.contains("accessors"))
+        return Error{Error::Kind::Input, "'" + path.string() + "' holds no mesh: remove it, so that it is made anew"};
+    Library::Entry entry;
+    entry.grid.origin = vectorOf(json["nodes"][0], "translation", {});
+    entry.grid.step = vectorOf(json["nodes"][0], "scale", {1, 1, 1});
+    for (const Json& primitive : json["meshes"][0]["primitives"]) {
+        const Json& position = json["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
+        entry.box.lo = entry.grid.origin + entry.grid.step * vectorOf(position, "min", {});
+        entry.box.hi = entry.grid.origin + entry.grid.step * vectorOf(position, "max", {});
+        entry.triangles += json["accessors"][primitive["indices"].get<size_t>()]["count"].get<uint64_t>() / 3;
+    }
+    entry.file = {withoutTheRest(json), {}, read->bytesAt, read->fileBytes};
+    return entry;
+}
+
 }  // namespace
 
 Status writeObject(const LibraryObject& object, Packing packing, const std::filesystem::path& path) {
@@ -266,26 +294,12 @@ Status writeObject(const LibraryObject& object, Packing packing, const std::file
 }
 
 Result<const Library::Entry*> Library::open(const std::filesystem::path& path) {
-    if (const auto known = known_.find(path); known != known_.end()) return &known->second;
-    auto read = readGlb(path);
+    if (const auto known = recent_.find(path); known != recent_.end()) return &known->second;
+    if (recent_.size() >= mostRecent) older_ = std::exchange(recent_, {});
+    if (auto known = older_.extract(path)) return &recent_.insert(std::move(known)).position->second;
+    auto read = readEntry(path);
     if (!read.ok()) return read.error();
-    const auto broken = [&] {
-        return Error{Error::Kind::Input, "'" + path.string() + "' holds no mesh: remove it, so that it is made anew"};
-    };
-    Entry entry;
-    entry.file = std::move(*read);
-    entry.file.bytes = {};
-    const Json& json = entry.file.json;
-    if (!json.contains("meshes") || !json.contains("nodes") || !json.contains("accessors")) return broken();
-    entry.grid.origin = vectorOf(json["nodes"][0], "translation", {});
-    entry.grid.step = vectorOf(json["nodes"][0], "scale", {1, 1, 1});
-    for (const Json& primitive : json["meshes"][0]["primitives"]) {
-        const Json& position = json["accessors"][primitive["attributes"]["POSITION"].get<size_t>()];
-        entry.box.lo = entry.grid.origin + entry.grid.step * vectorOf(position, "min", {});
-        entry.box.hi = entry.grid.origin + entry.grid.step * vectorOf(position, "max", {});
-        entry.triangles += json["accessors"][primitive["indices"].get<size_t>()]["count"].get<uint64_t>() / 3;
-    }
-    return &known_.emplace(path, std::move(entry)).first->second;
+    return &recent_.emplace(path, std::move(*read)).first->second;
 }
 
 Result<CellFigures> writeCell(const CellContent& content, Library& library, const std::filesystem::path& path) {

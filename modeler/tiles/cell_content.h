@@ -69,20 +69,23 @@ struct LibraryObject {
 /// Writes it, all or nothing, and its pictures into the folder "textures" beside that of the file.
 Status writeObject(const LibraryObject& object, Packing packing, const std::filesystem::path& path);
 
-/// What is known of the library's files, each read once; their bytes aren't kept.
+/// What is known of the library's files; their bytes aren't kept. The files that were opened last stay known, so that
+/// it takes the same memory for a library of any size.
 class Library {
 public:
     struct Entry {
-        Glb file;  ///< without bytes
+        Glb file;  ///< without bytes, and of its JSON what cells take over
         QuantizationGrid grid;
         Box3d box;  ///< metres
         uint64_t triangles = 0;
     };
-    /// Error::Input for a file that can't be read.
+    /// Valid until the next call. Error::Input for a file that can't be read.
     Result<const Entry*> open(const std::filesystem::path& path);
 
 private:
-    std::map<std::filesystem::path, Entry> known_;
+    using Entries = std::map<std::filesystem::path, Entry>;
+    static constexpr size_t mostRecent = 1024;
+    Entries recent_, older_;  ///< a full list of recent ones takes the place of the older ones
 };
 
 /// Writes the cell, all or nothing; no file for a cell without triangles. Error::Input where the library lacks an
