@@ -99,8 +99,9 @@ Status bakeTask(BakeOptions& options) {
             fmt::format("--tile {}: write I/N, task I of N, as 3/64: I is 1 … N, and N 1 … 1000000", options.tile)};
     Watch watch(options.quiet || options.missing > 0);
     Context context{watch.progress(), options.threads};
-    const auto model = makeModel(options.model, context, pipeline::Objects::Apart);
+    auto model = makeModel(options.model, context, pipeline::Objects::Apart);
     if (!model.ok()) return model.error();
+    model->lowered = pipeline::withoutGraph(*model->lowered);
     options.bake.folder = options.folder;
     options.bake.packing = options.pack == "none" ? tiles::Packing::None : tiles::Packing::Meshopt;
     options.bake.seeksThinParts = !options.quiet;

@@ -51,14 +51,7 @@ Model IncrementalPipeline::viewModel() const {
     return Model{derivation(), std::shared_ptr<const lower::Model>(std::shared_ptr<void>(), &model()), tape()};
 }
 
-Model IncrementalPipeline::copyModel() const {
-    auto lowered = std::make_unique<lower::Model>();
-    lowered->field = model().field;
-    lowered->field.value = {};
-    lowered->provenance = model().provenance;
-    lowered->shapeOf = model().shapeOf;
-    return Model{derivation(), std::move(lowered), tape()};
-}
+Model IncrementalPipeline::copyModel() const { return Model{derivation(), withoutGraph(model()), tape()}; }
 
 Result<MeshedModel> IncrementalPipeline::meshed(const mesh::Grid& grid, Context& context) {
     MeshedModel made;

@@ -100,6 +100,15 @@ Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const der
     return makeModel(std::move(*derivation), context, objects, options.budget);
 }
 
+std::shared_ptr<const lower::Model> withoutGraph(const lower::Model& model) {
+    auto copy = std::make_shared<lower::Model>();
+    copy->field = model.field;
+    copy->field.value = {};
+    copy->provenance = model.provenance;
+    copy->shapeOf = model.shapeOf;
+    return copy;
+}
+
 std::string sketchNote(const derive::Derivation& derivation) {
     if (derivation.masses == 0) return {};
     return fmt::format(

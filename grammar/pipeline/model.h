@@ -53,6 +53,9 @@ struct Model {
 /// Stages "derive", "objects" where there are some to graft, "lower", "compile". Errors as of those stages.
 Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Context& context,
                         Objects objects = Objects::Grafted);
+/// A copy without the field's graph, which nobody needs once there is a tape but who changes the field; of a large
+/// model it takes as much memory as its shapes.
+std::shared_ptr<const lower::Model> withoutGraph(const lower::Model& model);
 /// What is to be said of a model whose objects are sketched; "" where none are.
 std::string sketchNote(const derive::Derivation& derivation);
 /// The same from a derivation on, within a budget for what is grafted.

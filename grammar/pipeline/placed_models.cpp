@@ -27,15 +27,6 @@ double footOf(const Derivation& derivation) {
     return foot;
 }
 
-/// The shape that holds an object, but for its pose.
-Part partOf(const Derivation& derivation, derive::ShapeId id) {
-    const derive::Shape& shape = derivation.tree.shapes[id];
-    Part part;
-    part.path = derivation.tree.path(id);
-    part.madeBy = std::make_shared<const PartSource>(lower::sourceOf(derivation, shape));
-    return part;
-}
-
 }  // namespace
 
 bool hasSolids(const PlacedModel& object) { return object.derivation->terminals() > 0 || object.holds.empty(); }
@@ -211,10 +202,13 @@ Result<std::vector<PlacedModels::Place>> PlacedModels::places(uint64_t most) con
 
 Status PlacedModels::addPlaces(const Derivation& derivation, const std::vector<uint32_t>& holds, const Pose& frame,
                                const std::string& path, uint64_t most, std::vector<Place>& places) const {
+    lower::PartTexts texts(derivation);  // places of the same line share what is told of it
     for (const derive::Placement& placement : derive::placementsOf(derivation)) {
         const uint32_t index = of(holds, placement.object);
         const PlacedModel& object = objects_[index];
-        Part part = partOf(derivation, placement.shape);
+        Part part;
+        part.path = derivation.tree.path(placement.shape);
+        part.madeBy = texts.madeBy(derivation.tree.shapes[placement.shape]);
         if (!path.empty()) part.path = path + "/" + part.path.text();
         Pose local = poseOf(object, derivation.tree.shapes[placement.shape].scope);
         local.origin.y += derivation.tree.extrasOf(placement.shape)->lift_m;

@@ -138,8 +138,9 @@ Result<CityCosts> measureCity(const CityCase& what) {
     auto options = pipeline::optionsFor(*grammar, choice);
     if (!options.ok()) return options.error();
     pipeline::Context context{nullptr, 1};
-    const auto model = pipeline::makeModel(grammar, *options, context, pipeline::Objects::Apart);
+    auto model = pipeline::makeModel(grammar, *options, context, pipeline::Objects::Apart);
     if (!model.ok()) return model.error();
+    model->lowered = pipeline::withoutGraph(*model->lowered);
     const double model_s = processorSeconds() - start;
     const Scratch folder;
     pipeline::BakeRequest request;
