@@ -22,7 +22,7 @@ void TapeBuilder::begin(size_t keys, size_t instructions) {
 
 /// Makes room for more instructions before those that are written: what is left of a tape is often far less than it.
 void TapeBuilder::grow() {
-    std::vector<Instruction> larger(std::max<size_t>(256, 2 * code_.size()));
+    LargePageVector<Instruction> larger(std::max<size_t>(256, 2 * code_.size()));
     first_ = larger.size() - code_.size();
     std::copy(code_.begin(), code_.end(), larger.begin() + static_cast<ptrdiff_t>(first_));
     code_ = std::move(larger);
