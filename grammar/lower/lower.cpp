@@ -23,13 +23,13 @@ void Lowering::noteTurn(ShapeId id) {
 }
 
 /// What hangs on a shape and its parent alone, in one pass: the shapes of a large tree are far more than the caches
-/// hold. Returns how many have a solid of their own.
-size_t Lowering::surveyShapes() {
+/// hold. Makes room for all solids.
+void Lowering::surveyShapes() {
     std::vector<PlacedPlan> plans;
     plain_.assign(tree_.shapes.size(), true);
     turnedAt_.resize(tree_.shapes.size());
     auto paths = std::make_shared<ShapePaths>(tree_);
-    size_t solids = 0;
+    size_t solids = 0, planEdges = 0;
     for (ShapeId id = 0; id < tree_.shapes.size(); ++id) {
         const Shape& s = tree_.shapes[id];
         paths->add(s);
@@ -38,12 +38,17 @@ size_t Lowering::surveyShapes() {
         if (s.parent != none && !isSum(s)) plain_[s.parent] = false;
         noteTurn(id);
         solids += s.solid != none;
-        if (s.solid == none || s.scope.footprint == none || options_.threads == 1) continue;
-        if (const auto plan = planUnder(tree_.solids[s.solid], s.scope)) plans.push_back(*plan);
+        if (s.solid == none || s.scope.footprint == none) continue;
+        if (const auto plan = planUnder(tree_.solids[s.solid], s.scope)) {
+            planEdges += tree_.footprints[plan->footprint].footprint.edgeCount();
+            if (options_.threads != 1) plans.push_back(*plan);
+        }
     }
     plans_.prepare(plans, options_.threads);
     texts_.take(std::move(paths));
-    return solids;
+    model_.graph.reserve(solids, planEdges);
+    model_.provenance.parts.reserve(solids + 1);
+    model_.shapeOf.reserve(solids + 1);
 }
 
 /// True when the shape's terms belong to its parent's sum.
@@ -254,10 +259,7 @@ Status Lowering::walk(ShapeId top, Progress* progress) {
 }
 
 Status Lowering::run(Progress* progress) {
-    const size_t solids = surveyShapes();
-    model_.graph.reserveBoxes(solids);
-    model_.provenance.parts.reserve(solids + 1);
-    model_.shapeOf.reserve(solids + 1);
+    surveyShapes();
     if (options_.keeps) {
         kept_.parts.resize(tree_.shapes.size());
         kept_.termOf.resize(tree_.shapes.size(), none);

@@ -68,7 +68,7 @@ public:
     bool replay(std::span<const ShapeId> changed);
 
 private:
-    size_t surveyShapes();
+    void surveyShapes();
     void noteTurn(ShapeId id);
     Status walk(ShapeId top, Progress* progress);
     void attachToParent(ShapeId id, const Owned& part);

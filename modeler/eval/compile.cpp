@@ -225,10 +225,8 @@ Tape Compiler::write(TapeBuilder::Scale scale) {
         const Instruction like{.op = n.op, .count = 0, .out = 0, .data = n.data, .piece = pieces_[ordered_[i]]};
         builder.define(key, like, uses.data(), uses.size(), listed);
     }
-    Tape tape;
     const auto grids = graph_.grids().empty() ? nullptr : std::make_shared<const Grids>(graph_.grids());
-    builder.finish(std::make_shared<const std::vector<float>>(constants_.take()), grids, scale, tape);
-    return tape;
+    return builder.release(std::make_shared<const std::vector<float>>(constants_.take()), grids, scale);
 }
 
 Grids::Grids(std::vector<field::SampledGridPtr> all) : list(std::move(all)) {

@@ -86,6 +86,20 @@ void TapeBuilder::finish(const std::shared_ptr<const std::vector<float>>& consta
     into.code_.assign(code_.begin() + static_cast<ptrdiff_t>(first_), code_.end());
     into.sources_ = sources_;
     into.origins_ = origins_;
+    describe(constants, grids, scale, into);
+}
+
+Tape TapeBuilder::release(const std::shared_ptr<const std::vector<float>>& constants,
+                          const std::shared_ptr<const Grids>& grids, Scale scale) {
+    Tape made;
+    code_.erase(code_.begin(), code_.begin() + static_cast<ptrdiff_t>(first_));
+    made.code_ = std::move(code_), made.sources_ = std::move(sources_), made.origins_ = std::move(origins_);
+    describe(constants, grids, scale, made);
+    return made;
+}
+
+void TapeBuilder::describe(const std::shared_ptr<const std::vector<float>>& constants,
+                           const std::shared_ptr<const Grids>& grids, Scale scale, Tape& into) const {
     if (into.constants_ != constants) into.constants_ = constants;  // the count of owners is shared between threads
     if (into.grids_ != grids) into.grids_ = grids;
     into.registers_ = registers_;

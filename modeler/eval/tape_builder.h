@@ -59,6 +59,9 @@ public:
     /// The tape, in order, in the memory `into` has.
     void finish(const std::shared_ptr<const std::vector<float>>& constants, const std::shared_ptr<const Grids>& grids,
                 Scale scale, Tape& into);
+    /// The same with the memory that the builder has, which is of no use afterwards: for a large tape.
+    Tape release(const std::shared_ptr<const std::vector<float>>& constants, const std::shared_ptr<const Grids>& grids,
+                 Scale scale);
 
     /// What a tape says of its field as a whole.
     static Scale scaleOf(const Tape& tape) { return {tape.lipschitz(), tape.tieMargin(), tape.chosenInputs()}; }
@@ -78,6 +81,9 @@ private:
     uint32_t takeRegister();
     Instruction& begun(uint32_t key, const Instruction& like, size_t count, bool listed);
     void grow();
+    /// Says what doesn't come of instructions.
+    void describe(const std::shared_ptr<const std::vector<float>>& constants, const std::shared_ptr<const Grids>& grids,
+                  Scale scale, Tape& into) const;
 
     LargePageVector<Value> values_;   // all dead between tapes
     std::vector<uint64_t> liveBits_;  // by key, inputs apart

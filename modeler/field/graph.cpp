@@ -60,12 +60,15 @@ NodeRef unary(OpCode op, NodeRef a) { return a.graph().apply(op, {a}); }
 
 Graph::Graph() = default;
 
-void Graph::reserveBoxes(size_t count) {
+void Graph::reserve(size_t boxes, size_t planEdges) {
     // A box is its slots and a node, and the minimum that joins it.
     constexpr size_t slots = 6, operands = slots + 3;
-    nodes_.reserve(nodes_.size() + count * (boxNodes + 1));
-    operands_.reserve(operands_.size() + count * (operands + 2));
-    slots_.reserve(count * slots, count);
+    // An edge of a wall or a roof takes 10 nodes, of which 6 have operands, 12.3 operands and 4 slots.
+    constexpr size_t nodesOfEdge = 12, operandsOfEdge = 15, slotsOfEdge = 5, enteredOfEdge = 6;
+    nodes_.reserve(nodes_.size() + boxes * (boxNodes + 1) + planEdges * nodesOfEdge);
+    operands_.reserve(operands_.size() + boxes * (operands + 2) + planEdges * operandsOfEdge);
+    slots_.reserve(boxes * slots + planEdges * slotsOfEdge, boxes);
+    index_.reserve(planEdges * enteredOfEdge);
 }
 
 NodeRef Graph::input(uint32_t axis) {

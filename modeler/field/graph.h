@@ -62,9 +62,9 @@ public:
     Graph(Graph&&) = default;
     Graph& operator=(Graph&&) = default;
 
-    /// Makes room for so many more boxes that stand each in a place of its own, for graphs of many shapes: arrays that
-    /// grow are copied.
-    void reserveBoxes(size_t count);
+    /// Makes room for so many more boxes that stand each in a place of its own, and for solids over plans with so many
+    /// edges in all, as a rule: arrays that grow are copied, and their new memory has to be cleared.
+    void reserve(size_t boxes, size_t planEdges);
 
     NodeRef x() { return input(0); }
     NodeRef y() { return input(1); }

@@ -21,6 +21,8 @@ class NodeIndex {
 public:
     NodeIndex() { waiting_.fill(HashIndex::none); }
 
+    /// Makes room for `count` nodes that are entered.
+    void reserve(size_t count) { index_.reserve(count); }
     /// Calls enter(id) for nodes that wait, where one of them may have an operand of that kind as its newest one; then
     /// the node that `same` recognises among those of this hash, or none.
     template <class Enter, class Same>

@@ -69,7 +69,7 @@ TEST(Graph, SlotsAreFoundByTheirKeysInAnyOrder) {
 TEST(Graph, NodesAreOneWhereTheirContentsAre) {
     for (const bool reserves : {false, true}) {
         Graph g;
-        if (reserves) g.reserveBoxes(1000);
+        if (reserves) g.reserve(1000, 100);
         std::vector<NodeRef> nodes{g.x(), g.y(), g.z(), g.slot({1, 1}, 1), g.slot({1, 2}, 2)};
         std::map<std::tuple<uint16_t, NodeId, NodeId>, NodeId> known;
         size_t again = 0;
