@@ -35,7 +35,7 @@ public:
     const PlanShape& operator[](uint32_t index) const { return *shapes_[index]; }
     /// The footprint in metres about the centre of a scope of that half-size.
     plan::Footprint inMetres(uint32_t index, Vec3d half) const;
-    /// Keeps the depth of that footprint in metres (field::PlanNumbers::depth), for who asks for it again.
+    /// Keeps the depth of that footprint in metres (field::PlanNumbers::depth), so that it is searched once.
     void noteDepth(uint32_t index, Vec3d half, double depth_m) { depths_[sizeOf(index, half)] = depth_m; }
     std::optional<double> knownDepth(uint32_t index, Vec3d half) const {
         const auto known = depths_.find(sizeOf(index, half));

@@ -198,7 +198,7 @@ void ShapeMaker::standAsHigh(const Element& e, const Place& place, EvaluatedAttr
     const auto numbers =
         std::make_shared<const field::PlanNumbers>(footprint, index == none ? rectangle : footprints[index].formula);
     const double height_m = std::max(1e-3, field::heightOver(*value.primitive, numbers, arguments));
-    // Lowering asks for the same depth.
+    // Lowering needs the same depth.
     if (numbers->knownDepth() && index != none) footprints.noteDepth(index, out.scope.half(), *numbers->knownDepth());
     if (e.op == rules::Operator::None) out.moved_m += out.scope.axes.y * ((height_m - out.scope.size.y) / 2);
     out.scope.size.y = height_m;

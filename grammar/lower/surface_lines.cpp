@@ -16,10 +16,17 @@ constexpr int halvings = 8;         ///< of a step around a crossing
 
 }  // namespace
 
-double SurfaceLines::find(const derive::Scope& scope, bool isBox, OriginId part, const Density& density,
-                          const eval::Tape& tape, eval::Workspace& workspace) {
+double SurfaceLines::find(const derive::Scope& scope, OriginId part, const Density& density, const eval::Tape& tape,
+                          eval::Workspace& workspace) {
     const double spacing_m = listLines(scope, density.mostAlong);
-    isBox ? probeFaces(tape, workspace) : followLines(tape, workspace);
+    followLines(tape, workspace);
+    return spacing_m * keepOwn(part, tape, workspace, density.mostPoints);
+}
+
+double SurfaceLines::findOnFaces(const derive::Scope& scope, OriginId part, const Density& density,
+                                 const eval::Tape& tape, eval::Workspace& workspace) {
+    const double spacing_m = listLines(scope, density.mostAlong);
+    probeFaces(tape, workspace);
     return spacing_m * keepOwn(part, tape, workspace, density.mostPoints);
 }
 

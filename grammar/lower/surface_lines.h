@@ -30,10 +30,12 @@ public:
     SurfaceLines(const Box3f& bounds, float cell_m) : bounds_(bounds), cell_m_(static_cast<double>(cell_m)) {}
 
     /// Finds where lines along the scope's axes, about a cell apart, cross the field's surface and that is the part's
-    /// alone. Returns how far apart that is at most, metres. The tape is good for a box around the scope. Of a box, the
-    /// scope's faces alone are looked at.
-    double find(const derive::Scope& scope, bool isBox, OriginId part, const Density& density, const eval::Tape& tape,
+    /// alone. Returns how far apart that is at most, metres. The tape is good for a box around the scope.
+    double find(const derive::Scope& scope, OriginId part, const Density& density, const eval::Tape& tape,
                 eval::Workspace& workspace);
+    /// The same of a box, whose surface lies on the scope's faces: these alone are looked at.
+    double findOnFaces(const derive::Scope& scope, OriginId part, const Density& density, const eval::Tape& tape,
+                       eval::Workspace& workspace);
     std::span<const Bracket> found() const { return found_; }
 
     /// Halves the steps around crossings.

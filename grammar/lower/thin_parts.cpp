@@ -351,8 +351,9 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     if (cancelled(progress)) return cancelledError();
     std::vector<ThinPart> found = lackedOf(thin);
     std::erase_if(found, [&](const ThinPart& whole) {  // its walls are thinner
-        return std::any_of(walls->begin(), walls->end(),
-                           [&](const ThinPart& w) { return w.part == whole.part && w.isShell; });
+        const auto wall = std::lower_bound(walls->begin(), walls->end(), whole.part,
+                                           [](const ThinPart& w, OriginId part) { return w.part < part; });
+        return wall != walls->end() && wall->part == whole.part && wall->isShell;
     });
     std::move(walls->begin(), walls->end(), std::back_inserter(found));
     for (const ThinSection& section : *sections)

@@ -99,7 +99,7 @@ private:
 
     ThinWalls wallsOf(const WalledPart& part, const eval::Tape& tape, const SurfaceLines::Density& density) {
         ThinWalls walls{part, 0, 0, {}, {}, 0};
-        walls.spacing_m = surface_.find(part.scope, false, part.part, density, tape, tapes_.workspace());
+        walls.spacing_m = surface_.find(part.scope, part.part, density, tape, tapes_.workspace());
         walls.points = surface_.found().size();
         if (walls.points > 0) measure(tape, walls.lines);
         return walls;

@@ -103,7 +103,8 @@ public:
     void probe(std::span<Rim> rims, std::span<const Box3f> boxes) {
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) {
             Rim& rim = rims[i];
-            rim.spacing_m = surface_.find(rim.scope, rim.isBox, rim.part, density, tape, tapes_.workspace());
+            rim.spacing_m = rim.isBox ? surface_.findOnFaces(rim.scope, rim.part, density, tape, tapes_.workspace())
+                                      : surface_.find(rim.scope, rim.part, density, tape, tapes_.workspace());
             for (const SurfaceLines::Bracket& b : surface_.found()) {
                 rim.points.push_back(b.middle());
                 if (!presence_.isNear(b.middle().as<float>(), rim.part)) ++rim.away;
@@ -117,7 +118,7 @@ private:
     const Presence& presence_;
 };
 
-/// Blocks and round parts of which the mesh shows strips.
+/// Blocks, round parts and what stands over a plan, of which the mesh shows strips.
 std::vector<Rim> rimsOf(const derive::Derivation& derivation, const Model& model, const mesh::Mesh& mesh, double cell_m,
                         const std::vector<ThinPart>* among) {
     std::vector<bool> isWanted(model.shapeOf.size(), !among);

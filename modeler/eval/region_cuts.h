@@ -1,7 +1,7 @@
 // A long union cut to regions: which of its parts matter where, without a trace of the whole tape.
 // Enters: a tape whose value is a union, up to 64 boxes. Leaves: for each box a tape of the parts that count there.
-// Besides those tapes it takes memory by part, and not by instruction as evaluateRanges
-// does, which keeps some 120 bytes of each: what a town consists of is a union of parts that are short.
+// Besides those tapes it takes memory by part, and not by instruction as evaluateRanges does, which keeps some 120
+// bytes of each: what a town consists of is a union of parts that are short.
 #pragma once
 
 #include <array>

@@ -42,7 +42,7 @@ public:
         : PlanField(std::make_shared<const PlanNumbers>(footprint, formula), p, path) {}
     /// The same of numbers that solids over one footprint share.
     PlanField(std::shared_ptr<const PlanNumbers> numbers, Point p, uint64_t path);
-    /// Literals in place of distances and of the position: for who asks a solid for its bounds alone.
+    /// With literals in place of distances and of the position: a solid over it has its bounds, and no field.
     PlanField(std::shared_ptr<const PlanNumbers> numbers, Graph& graph);
 
     Graph& graph() const { return p_.x.graph(); }

@@ -9,7 +9,7 @@
 namespace sgm::field {
 namespace {
 
-/// By edge: the first of those parallel to it either way, so nearly that its line leaves its edge by no more than 10 µm
+/// By edge: the first of those parallel to it either way, so nearly that its line leaves its edge by at most 10 µm
 /// anywhere in the footprint.
 std::vector<uint32_t> leadersOf(const std::vector<plan::PlacedEdge>& edges, const std::vector<plan::Vec2>& normals) {
     plan::Box2 box;

@@ -34,7 +34,7 @@ public:
     }
     /// The depth where it was asked for.
     const std::optional<double>& knownDepth() const { return depth_; }
-    /// Says what `depth` gives, for who has it from an equal footprint and formula.
+    /// Sets what `depth` returns, where it is known of an equal footprint and formula.
     void setDepth(double depth_m) { depth_ = depth_m; }
 
 private:

@@ -8,25 +8,13 @@
 namespace sgm::eval::testing {
 namespace {
 
-NodeRef smaller(Graph& graph, field::Operand a, field::Operand b) {
-    const field::Operand both[] = {a, b};
-    return graph.apply(codeOf<ops::Min>, both);
-}
-
 /// A balanced union of what `part` gives for 0 … count − 1, each with an owner of its own.
 template <class Part>
 Tape unionOf(Graph& graph, size_t count, float reach, Part part) {
     std::vector<field::Operand> parts;
     for (size_t i = 0; i < count; ++i) parts.push_back({part(i).id(), static_cast<OriginId>(i + 1)});
-    while (parts.size() > 1) {
-        std::vector<field::Operand> pairs;
-        for (size_t i = 0; i + 1 < parts.size(); i += 2)
-            pairs.push_back({smaller(graph, parts[i], parts[i + 1]).id(), 0});
-        if (parts.size() % 2 == 1) pairs.push_back(parts.back());
-        parts = pairs;
-    }
     const Box3f box{{-reach, -reach, -reach}, {reach, reach, reach}};
-    return compile(graph, {NodeRef(&graph, parts[0].node), box, 1, 1}, graph.constants());
+    return compile(graph, {balancedUnion(graph, parts), box, 1, 1}, graph.constants());
 }
 
 /// Names of what the points lie on.

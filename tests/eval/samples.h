@@ -21,6 +21,24 @@ using field::Field;
 using field::Graph;
 using field::NodeRef;
 
+/// The minimum of two values, which owns what it shows.
+inline NodeRef smaller(Graph& graph, field::Operand a, field::Operand b) {
+    const field::Operand both[] = {a, b};
+    return graph.apply(codeOf<ops::Min>, both);
+}
+
+/// The union of one part or more, whose tree of minima leans to neither side.
+inline NodeRef balancedUnion(Graph& graph, std::vector<field::Operand> parts) {
+    while (parts.size() > 1) {
+        std::vector<field::Operand> pairs;
+        for (size_t i = 0; i + 1 < parts.size(); i += 2)
+            pairs.push_back({smaller(graph, parts[i], parts[i + 1]).id(), 0});
+        if (parts.size() % 2 == 1) pairs.push_back(parts.back());
+        parts = pairs;
+    }
+    return {&graph, parts[0].node};
+}
+
 /// Equal bits; any NaN equals any other.
 inline bool sameBits(float a, float b) {
     return std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b) || (std::isnan(a) && std::isnan(b));

@@ -24,11 +24,6 @@ field::Operand ball(Graph& graph, float x, OriginId owner) {
     return {(length(field::Point{p.x - graph.slot(x), p.y, p.z}) - graph.slot(0.4f)).id(), owner};
 }
 
-NodeRef smaller(Graph& graph, field::Operand a, field::Operand b) {
-    const field::Operand both[] = {a, b};
-    return graph.apply(codeOf<ops::Min>, both);
-}
-
 std::vector<OriginId> ownersOf(const Tape& tape, const Cloud& cloud) {
     Workspace w;
     std::vector<OriginId> owners(cloud.size());
@@ -41,14 +36,7 @@ TEST(UnionParts, ThatAreAllLeftTakeFewRegisters) {
     Graph graph;
     std::vector<field::Operand> parts;
     for (int i = 0; i < 1000; ++i) parts.push_back(ball(graph, float(i), OriginId(i + 1)));
-    while (parts.size() > 1) {
-        std::vector<field::Operand> pairs;
-        for (size_t i = 0; i + 1 < parts.size(); i += 2)
-            pairs.push_back({smaller(graph, parts[i], parts[i + 1]).id(), 0});
-        if (parts.size() % 2 == 1) pairs.push_back(parts.back());
-        parts = pairs;
-    }
-    const Tape tape = compile(graph, {NodeRef(&graph, parts[0].node), {}, 1, 1}, graph.constants());
+    const Tape tape = compile(graph, {balancedUnion(graph, parts), {}, 1, 1}, graph.constants());
     Workspace w;
     const Box3f box{{-1, -600, -1}, {1000, 600, 1}};  // so wide that no ball is above another all over
     FloatInterval range;
