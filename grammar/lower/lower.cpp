@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <map>
 #include <set>
 
 #include "grammar/derive/lift.h"
 #include "grammar/lower/lowering.h"
 #include "grammar/lower/solids.h"
+#include "modeler/core/pages.h"
+#include "modeler/core/parallel.h"
 #include "modeler/core/random.h"
 #include "modeler/field/domain.h"
 #include "modeler/field/drape.h"
@@ -267,7 +270,15 @@ Status Lowering::run(Progress* progress) {
     }
     if (progress) progress->begin("lower", tree_.shapes.size());
     model_.shapeOf.push_back(none);
-    if (const Status done = walk(0, progress); !done.ok()) return done;
+    Status done = Done{};
+    std::atomic<bool> isWalked{false};
+    const std::vector<UnusedMemory> unused = model_.graph.unusedMemory();
+    parallelFor(2, options_.threads, nullptr, [&](size_t task, int) {
+        if (task == 1) return clearAhead(unused, &isWalked);
+        done = walk(0, progress);
+        isWalked = true;
+    });
+    if (!done.ok()) return done;
     plans_.clear();
     if (noted_.refused != none)
         return Error{Error::Kind::Budget,

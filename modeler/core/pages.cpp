@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
@@ -128,5 +129,24 @@ void freePages(void* memory, size_t bytes) noexcept {
 }  // namespace detail
 
 void releasePages() noexcept { freeRegions().release(); }
+
+void clearAhead(std::span<const UnusedMemory> memory, const std::atomic<bool>* isEnough) noexcept {
+#if defined(MADV_POPULATE_WRITE)
+    constexpr size_t mostSteps = 64;  // of each
+    for (size_t step = 0; step < mostSteps; ++step)
+        for (const UnusedMemory& m : memory) {
+            const size_t begin = reinterpret_cast<uintptr_t>(m.begin), pages = m.bytes / hugePage;
+            const size_t first = (begin + hugePage - 1) / hugePage + pages * step / mostSteps,
+                         last = std::min((begin + hugePage - 1) / hugePage + pages * (step + 1) / mostSteps,
+                                         (begin + m.bytes) / hugePage);
+            if (first >= last) continue;
+            if (isEnough && isEnough->load(std::memory_order_relaxed)) return;
+            if (madvise(reinterpret_cast<void*>(first * hugePage), (last - first) * hugePage, MADV_POPULATE_WRITE) != 0)
+                return;
+        }
+#else
+    static_cast<void>(memory), static_cast<void>(isEnough);
+#endif
+}
 
 }  // namespace sgm

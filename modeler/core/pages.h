@@ -4,9 +4,11 @@
 // computing what goes into it.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <new>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -21,6 +23,17 @@ void freePages(void* memory, size_t bytes) noexcept;
 
 /// Gives regions that nothing lies in back to the system. Otherwise up to 4 GiB stay, all but 256 MiB its to reclaim.
 void releasePages() noexcept;
+
+/// Memory that has been allocated and not written yet.
+struct UnusedMemory {
+    const void* begin = nullptr;
+    size_t bytes = 0;
+};
+
+/// Has the system clear these, all of them side by side from their beginnings, or until `isEnough`: what is written to
+/// pages that are cleared already doesn't wait for it, so it is worth a thread beside the one that writes. Does nothing
+/// with what is smaller than a huge page, and nothing where the system can't.
+void clearAhead(std::span<const UnusedMemory> memory, const std::atomic<bool>* isEnough = nullptr) noexcept;
 
 /// For std::vector: a `resize` leaves new elements as the memory was, to be written once.
 template <class T>
@@ -81,5 +94,11 @@ using PageVector = std::vector<T, PageAllocator<T>>;
 /// The same where only large ones are worth pages of their own.
 template <class T>
 using LargePageVector = std::vector<T, LargePageAllocator<T>>;
+
+/// What a vector has room for beyond its elements.
+template <class Vector>
+UnusedMemory unusedOf(const Vector& vector) {
+    return {vector.data() + vector.size(), (vector.capacity() - vector.size()) * sizeof(typename Vector::value_type)};
+}
 
 }  // namespace sgm

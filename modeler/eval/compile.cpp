@@ -2,6 +2,7 @@
 #include "modeler/eval/compiler.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "modeler/core/parallel.h"
@@ -35,17 +36,14 @@ float foldedValue(const Graph& graph, const Node& n, std::span<const float> args
 Tape Compiler::run(const field::Field& field) {
     // What tells values apart hangs on the graph, what orders them on numbers: two threads can share the passes.
     constexpr NodeId many = 1 << 14;
-    const auto beside = [&](auto one, auto other) {
-        parallelFor(2, root_ >= many ? threads_ : 1, nullptr, [&](size_t task, int) { task == 0 ? one() : other(); });
-    };
-    beside(
-        [this] {
-            reach();
-            for (NodeId id = 0; id <= root_; ++id)
-                if (nodeClasses_[id].kind != NodeClass::Unreached) decide(id);
-        },
-        [this] { hashNodes(); });
-    beside([this] { order(); }, [this] { namePieces(); });
+    const int threads = root_ >= many ? threads_ : 1;
+    parallelFor(2, threads, nullptr, [&](size_t task, int) {
+        if (task == 1) return hashNodes();
+        reach();
+        for (NodeId id = 0; id <= root_; ++id)
+            if (nodeClasses_[id].kind != NodeClass::Unreached) decide(id);
+    });
+    order(threads);
     return write(scaleOf(field));
 }
 
@@ -85,18 +83,24 @@ void Compiler::decide(NodeId id) {
     if (isInput(id)) return;
     const auto isNumber = [&](const field::Operand& o) { return fateOf(o.node).kind == NodeClass::Constant; };
     if (std::all_of(operands.begin(), operands.end(), isNumber))
-        nodeClass = {NodeClass::Constant, 0, std::bit_cast<uint32_t>(number(id))};
+        nodeClass = {NodeClass::Constant, 0, 0, std::bit_cast<uint32_t>(number(id))};
     else if (const auto same = passesOn(id))
-        nodeClass = {NodeClass::Same, 0, *same};
+        nodeClass = {NodeClass::Same, 0, 0, *same};
     else
-        nodeClass.need = need(byRegisterNeed(id));
+        decideInstruction(id);
+}
+
+void Compiler::decideInstruction(NodeId id) {
+    const auto heavy = byRegisterNeed(id, sorted_);
+    nodeClasses_[id] = {NodeClass::Instruction, heavy.size() > 1, need(heavy), heavy.empty() ? id : heavy[0]};
+    ++instructions_;
 }
 
 /// Operands that are instructions, those that need most registers first: the order that keeps fewest of them busy.
-std::span<const NodeId> Compiler::byRegisterNeed(NodeId id) {
+std::span<const NodeId> Compiler::byRegisterNeed(NodeId id, std::vector<NodeId>& sorted) const {
     const auto operands = graph_.operands(id);
-    if (sorted_.size() < operands.size()) sorted_.resize(operands.size());
-    NodeId *const begin = sorted_.data(), *end = begin;
+    if (sorted.size() < operands.size()) sorted.resize(operands.size());
+    NodeId *const begin = sorted.data(), *end = begin;
     for (const field::Operand& o : operands) {
         const NodeId at = standIn(o.node);
         const NodeClass& nodeClass = nodeClasses_[at];
@@ -119,32 +123,81 @@ uint32_t Compiler::need(std::span<const NodeId> heavy) const {
     return most;
 }
 
-/// Post-order over what is left, on a stack of our own. Gives values the keys that the builder knows them by: far fewer
-/// than nodes, most of which are numbers.
-void Compiler::order() {
-    if (fateOf(root_).kind != NodeClass::Instruction || isInput(standIn(root_))) return;
+/// Post-order over what is left, and beside it what hangs on nothing of it. Gives values the keys that the builder
+/// knows them by: far fewer than nodes, most of which are numbers.
+void Compiler::order(int threads) {
+    // Two halves of what the root reads. Both may order what they share: then it stands in the first.
+    std::array<PageVector<NodeId>, 2> halves;
+    std::vector<NodeId> heavy;
+    const bool isInstruction = fateOf(root_).kind == NodeClass::Instruction && !isInput(standIn(root_));
+    if (isInstruction) heavy.resize(byRegisterNeed(standIn(root_), heavy).size());
+    const size_t middle = threads == 1 ? heavy.size() : heavy.size() / 2;
+    parallelFor(4, threads, nullptr, [&](size_t task, int) {
+        if (task == 0) builder_.reserve(instructions_ + 3, instructions_);
+        if (task == 1) halves[0] = inOrder(std::span(heavy).first(middle));
+        if (task == 2) halves[1] = inOrder(std::span(heavy).subspan(middle));
+        if (task == 3) namePieces();
+    });
     std::vector<bool> done(nodeClasses_.size());
-    std::vector<std::pair<NodeId, bool>> stack{{standIn(root_), false}};
+    const auto put = [&](NodeId id) {
+        if (done[id]) return;
+        done[id] = true;
+        nodeClasses_[id].what = static_cast<uint32_t>(ordered_.size());
+        ordered_.push_back(id);
+    };
+    ordered_.reserve(halves[0].size() + halves[1].size() + 1);
+    for (const PageVector<NodeId>& half : halves) std::for_each(half.begin(), half.end(), put);
+    if (isInstruction) put(standIn(root_));
+}
+
+/// These values and all that they consist of, each after what it is made of; on a stack of our own.
+PageVector<NodeId> Compiler::inOrder(std::span<const NodeId> values) const {
+    PageVector<NodeId> ordered;
+    std::vector<bool> done(nodeClasses_.size());
+    std::vector<NodeId> sorted;
+    std::vector<std::pair<NodeId, bool>> stack;
+    for (size_t i = values.size(); i-- > 0;) stack.push_back({values[i], false});
     while (!stack.empty()) {
         const auto [id, ready] = stack.back();
         stack.pop_back();
         if (done[id]) continue;
         if (ready) {
             done[id] = true;
-            nodeClasses_[id].what = static_cast<uint32_t>(ordered_.size());
-            ordered_.push_back(id);
+            ordered.push_back(id);
             continue;
         }
         stack.push_back({id, true});
-        const auto heavy = byRegisterNeed(id);
+        const NodeClass& nodeClass = nodeClasses_[id];
+        if (!nodeClass.forks) {
+            if (nodeClass.what != id) stack.push_back({nodeClass.what, false});
+            continue;
+        }
+        const auto heavy = byRegisterNeed(id, sorted);
         for (size_t i = heavy.size(); i-- > 0;)
             if (!done[heavy[i]]) stack.push_back({heavy[i], false});
     }
+    return ordered;
 }
 
 TapeBuilder::Use Compiler::useOf(const field::Operand& o) {
     const NodeClass& f = fateOf(o.node);
-    return {f.kind == NodeClass::Constant ? constants_.source(o.node, f.value()) : f.what, o.origin};
+    return {f.kind == NodeClass::Constant ? constantAt(standIn(o.node)) : f.what, o.origin};
+}
+
+/// What is known of a node and its operands, into the caches.
+void Compiler::fetch(NodeId id) const {
+    __builtin_prefetch(&pieces_[id]);
+    for (const field::Operand& o : graph_.operands(id)) __builtin_prefetch(&nodeClasses_[o.node]);
+}
+
+/// The place of a number in the tape's table.
+Source Compiler::constantAt(NodeId id) {
+    NodeClass& number = nodeClasses_[id];
+    if (number.need == 0) {
+        table_.push_back(number.value());
+        number.need = static_cast<uint32_t>(table_.size());
+    }
+    return (number.need - 1) | constantBit;
 }
 
 /// Tells nodes by all that they consist of, slots by their keys: so names outlast a change of numbers and of other
@@ -197,7 +250,7 @@ TapeBuilder::Scale Compiler::scaleOf(const field::Field& field) const {
 }
 
 Tape Compiler::write(TapeBuilder::Scale scale) {
-    TapeBuilder builder;
+    TapeBuilder builder = std::move(builder_);
     builder.begin(ordered_.size() + 3, ordered_.size());
     for (NodeId id = 0; id <= root_; ++id) {
         if (nodeClasses_[id].kind == NodeClass::Unreached || !isInput(id)) continue;
@@ -206,12 +259,11 @@ Tape Compiler::write(TapeBuilder::Scale scale) {
     }
     builder.result(useOf({root_, 0}));
     std::vector<TapeBuilder::Use> uses;
-    constexpr size_t ahead = 8;  // the table of numbers is larger than the caches
+    constexpr size_t ahead = 16;  // a large graph lies outside the caches, and its nodes aren't read in their order
     for (size_t i = ordered_.size(); i-- > 0;) {
-        if (i >= ahead)
-            for (const field::Operand& o : graph_.operands(ordered_[i - ahead]))
-                if (const NodeClass& f = fateOf(o.node); f.kind == NodeClass::Constant)
-                    constants_.prefetch(o.node, f.value());
+        if (i >= 3 * ahead) __builtin_prefetch(&graph_.node(ordered_[i - 3 * ahead]));
+        if (i >= 2 * ahead) __builtin_prefetch(graph_.operands(ordered_[i - 2 * ahead]).data());
+        if (i >= ahead) fetch(ordered_[i - ahead]);
         const Node& n = graph_.node(ordered_[i]);
         const auto key = static_cast<uint32_t>(i);
         uses.clear();
@@ -226,7 +278,7 @@ Tape Compiler::write(TapeBuilder::Scale scale) {
         builder.define(key, like, uses.data(), uses.size(), listed);
     }
     const auto grids = graph_.grids().empty() ? nullptr : std::make_shared<const Grids>(graph_.grids());
-    return builder.release(std::make_shared<const std::vector<float>>(constants_.take()), grids, scale);
+    return builder.release(std::make_shared<const std::vector<float>>(std::move(table_)), grids, scale);
 }
 
 Grids::Grids(std::vector<field::SampledGridPtr> all) : list(std::move(all)) {
@@ -234,7 +286,7 @@ Grids::Grids(std::vector<field::SampledGridPtr> all) : list(std::move(all)) {
 }
 
 Tape compile(const field::Graph& graph, const field::Field& field, std::span<const float> constants, int threads) {
-    return Compiler(graph, field.value.id(), constants, false, threads).run(field);
+    return Compiler(graph, field.value.id(), constants, threads).run(field);
 }
 
 }  // namespace sgm::eval

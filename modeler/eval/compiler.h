@@ -7,9 +7,7 @@
 #include <bit>
 #include <optional>
 
-#include "modeler/core/random.h"
 #include "modeler/eval/tape_builder.h"
-#include "modeler/field/hash_index.h"
 #include "modeler/field/ops.h"
 
 namespace sgm::eval {
@@ -20,56 +18,25 @@ using field::NodeId;
 struct NodeClass {
     enum Kind : uint32_t { Unreached, Constant, Same, Instruction };
     uint32_t kind : 2 = Unreached;
-    uint32_t need : 30 = 0;  ///< registers to compute it (Sethi & Ullman 1970), for Instruction
-    /// Of Constant the number's bits, of Same the node, of Instruction the value's key in TapeBuilder.
+    uint32_t forks : 1 = 0;  ///< of Instruction: several operands are instructions
+    /// Of Instruction the registers to compute it (Sethi & Ullman 1970); of Constant 1 + its place in the tape's table,
+    /// 0 where no instruction reads it.
+    uint32_t need : 29 = 0;
+    /// Of Constant the number's bits, of Same the node, of Instruction the value's key in TapeBuilder; before it has
+    /// one the operand that is an instruction, the node itself where none is.
     uint32_t what = 0;
 
     float value() const { return std::bit_cast<float>(what); }
 };
 
-/// UniformParams of a tape, each once: told by their bits, or by the node they come from, so that one may change alone.
-class Constants {
-public:
-    explicit Constants(bool byNode) : byNode_(byNode) {}
-    Source source(NodeId node, float value) {
-        const uint32_t key = byNode_ ? node : std::bit_cast<uint32_t>(value);
-        const uint32_t known = find(key);
-        if (known != TapeBuilder::none) return known | constantBit;
-        const auto place = static_cast<uint32_t>(values_.size());
-        index_.insert(mix(key), place);
-        keys_.push_back(key);
-        values_.push_back(value);
-        return place | constantBit;
-    }
-    /// Fetches what `source` reads into the cache.
-    void prefetch(NodeId node, float value) const {
-        index_.prefetch(mix(byNode_ ? node : std::bit_cast<uint32_t>(value)));
-    }
-    /// The number's place in the table, by node; none for a node that no instruction reads.
-    uint32_t placeOf(NodeId node) const { return find(node); }
-    std::vector<float> take() { return std::move(values_); }
-
-private:
-    static_assert(TapeBuilder::none == field::HashIndex::none);
-    uint32_t find(uint32_t key) const {
-        return index_.find(mix(key), [&](uint32_t place) { return keys_[place] == key; });
-    }
-
-    const bool byNode_;
-    std::vector<float> values_;
-    PageVector<uint32_t> keys_;  ///< by place
-    field::HashIndex index_;
-};
-
 class Compiler {
 public:
-    Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants, bool byNode, int threads = 0)
+    Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants, int threads = 0)
         : graph_(graph),
           threads_(threads),
           root_(root),
           slots_(constants),
-          nodeClasses_(size_t{root} + 1, NodeClass{}),
-          constants_(byNode) {}
+          nodeClasses_(size_t{root} + 1, NodeClass{}) {}
 
     Tape run(const field::Field& field);
 
@@ -85,19 +52,26 @@ public:
     std::optional<NodeId> passesOn(NodeId id) const;
     /// What a tape says of the field as a whole.
     TapeBuilder::Scale scaleOf(const field::Field& field) const;
-    /// As of Constants.
-    uint32_t placeOf(NodeId id) const { return constants_.placeOf(id); }
+    /// The number's place in the tape's table; none where no instruction reads it.
+    std::optional<uint32_t> placeOf(NodeId id) const {
+        const uint32_t place = nodeClasses_[id].need;
+        return place == 0 ? std::nullopt : std::optional(place - 1);
+    }
 
 private:
     void reach();
     void decide(NodeId id);
-    std::span<const NodeId> byRegisterNeed(NodeId id);
+    void decideInstruction(NodeId id);
+    std::span<const NodeId> byRegisterNeed(NodeId id, std::vector<NodeId>& sorted) const;
     uint32_t need(std::span<const NodeId> heavy) const;
-    void order();
+    void order(int threads);
+    PageVector<NodeId> inOrder(std::span<const NodeId> values) const;
     void hashNodes();
     void namePieces();
     Tape write(TapeBuilder::Scale scale);
     TapeBuilder::Use useOf(const field::Operand& o);
+    Source constantAt(NodeId id);
+    void fetch(NodeId id) const;
 
     /// The node that stands for `id`.
     NodeId standIn(NodeId id) const { return nodeClasses_[id].kind == NodeClass::Same ? nodeClasses_[id].what : id; }
@@ -111,10 +85,12 @@ private:
     PageVector<NodeClass> nodeClasses_;
     std::vector<float> args_;
     std::vector<NodeId> sorted_;
+    size_t instructions_ = 0;  ///< nodes that are one; not all are read
     PageVector<NodeId> ordered_;
     PageVector<uint64_t> hashes_;  ///< by node, of all that it consists of
     PageVector<uint32_t> pieces_;  ///< by node, see Instruction::piece
-    Constants constants_;
+    std::vector<float> table_;     ///< the tape's constants, each once by the node that it comes from
+    TapeBuilder builder_;
     bool owned_ = false;  ///< someone owns something
 };
 

@@ -11,7 +11,7 @@ namespace sgm::eval {
 struct IncrementalCompiler::State {
     State(const field::Graph& graph, const field::Field& field)
         : constants(graph.constants().begin(), graph.constants().end()),
-          compiler(graph, field.value.id(), constants, true),
+          compiler(graph, field.value.id(), constants),
           tape(compiler.run(field)) {}
 
     /// Lists who reads a number, and which node is which slot.
@@ -81,10 +81,10 @@ bool IncrementalCompiler::rebind(const field::Graph& graph, const field::Field& 
         const float value = compiler.number(id);
         if (std::bit_cast<uint32_t>(value) == compiler.nodeClass(id).what) continue;
         compiler.setNumber(id, value);
-        if (const uint32_t place = compiler.placeOf(id); place != TapeBuilder::none) {
+        if (const auto place = compiler.placeOf(id)) {
             if (!table) table = std::make_shared<std::vector<float>>(*changed_.before);
-            (*table)[place] = value;
-            changed_.places.push_back(place);
+            (*table)[*place] = value;
+            changed_.places.push_back(*place);
         }
         for (uint32_t r = state_->firstReader[id]; r < state_->firstReader[id + 1]; ++r) {
             const NodeId reader = state_->readers[r];

@@ -1,10 +1,18 @@
 #include "modeler/eval/tape_builder.h"
 
 #include <algorithm>
+#include <array>
 
 #include "modeler/field/ops.h"
 
 namespace sgm::eval {
+
+void TapeBuilder::reserve(size_t keys, size_t instructions) {
+    code_.reserve(instructions);
+    clearAhead(std::array{unusedOf(code_)});
+    values_.resize(keys, Value{});
+    liveBits_.resize(keys / 64 + 1);
+}
 
 void TapeBuilder::begin(size_t keys, size_t instructions) {
     if (values_.size() < keys) {

@@ -34,6 +34,8 @@ public:
         uint32_t chosenInputs;
     };
 
+    /// Makes room for a large tape of at most so many, and has the system clear it.
+    void reserve(size_t keys, size_t instructions);
     /// Starts a tape whose values have keys below `keys`. A key may stand for another value once its own is defined.
     /// `instructions`: makes room for so many at once.
     void begin(size_t keys, size_t instructions = 0);

@@ -64,11 +64,17 @@ void Graph::reserve(size_t boxes, size_t planEdges) {
     // A box is its slots and a node, and the minimum that joins it.
     constexpr size_t slots = 6, operands = slots + 3;
     // An edge of a wall or a roof takes 10 nodes, of which 6 have operands, 12.3 operands and 4 slots.
-    constexpr size_t nodesOfEdge = 12, operandsOfEdge = 15, slotsOfEdge = 5, enteredOfEdge = 6;
+    constexpr size_t nodesOfEdge = 12, operandsOfEdge = 15, slotsOfEdge = 5;
     nodes_.reserve(nodes_.size() + boxes * (boxNodes + 1) + planEdges * nodesOfEdge);
     operands_.reserve(operands_.size() + boxes * (operands + 2) + planEdges * operandsOfEdge);
     slots_.reserve(boxes * slots + planEdges * slotsOfEdge, boxes);
-    index_.reserve(planEdges * enteredOfEdge);
+}
+
+std::vector<UnusedMemory> Graph::unusedMemory() const {
+    const auto ofSlots = slots_.unusedMemory();
+    std::vector<UnusedMemory> all(ofSlots.begin(), ofSlots.end());
+    all.push_back(unusedOf(nodes_)), all.push_back(unusedOf(operands_));
+    return all;
 }
 
 NodeRef Graph::input(uint32_t axis) {
@@ -193,8 +199,7 @@ NodeId Graph::addBoxes(size_t count) {
     // Where the first one's slots and operands lie tells where those of all others do.
     nodes_[first] = {codeOf<ops::Slot>, slot, static_cast<uint32_t>(operand), 0};
     const OpCode kind = kindOf(codeOf<ops::Box>, codeOf<ops::Slot>);
-    index_.note(static_cast<NodeId>(first + slots - 1), kind);
-    index_.note(static_cast<NodeId>(first + (count - 1) * boxNodes + slots - 1), kind);
+    for (size_t i = 0; i < count; ++i) index_.note(static_cast<NodeId>(first + i * boxNodes + slots - 1), kind);
     return static_cast<NodeId>(first);
 }
 

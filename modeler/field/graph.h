@@ -65,6 +65,8 @@ public:
     /// Makes room for so many more boxes that stand each in a place of its own, and for solids over plans with so many
     /// edges in all, as a rule: arrays that grow are copied, and their new memory has to be cleared.
     void reserve(size_t boxes, size_t planEdges);
+    /// What has been reserved and not used yet, for `clearAhead`; valid until another node or slot is added.
+    std::vector<UnusedMemory> unusedMemory() const;
 
     NodeRef x() { return input(0); }
     NodeRef y() { return input(1); }

@@ -21,7 +21,7 @@ void SlotTable::reserve(size_t slots, size_t paths) {
 SlotTable::Recent& SlotTable::remember(uint64_t path, uint32_t run) {
     Recent& recent = recent_[oldest_];
     oldest_ = (oldest_ + 1) % recent_.size();
-    recent = {true, path, run, {}};
+    recent = {true, path, run, 0, {}};
     if (run != absent) recent.attributes.fill(~uint64_t{0});
     return recent;
 }
@@ -52,8 +52,18 @@ SlotTable::Run& SlotTable::runOf(Recent& recent) {
 SlotId SlotTable::find(Recent& recent, const SlotKey& key) const {
     if (recent.run == absent || !recent.mayHave(key.attribute)) return absent;
     const Run& run = runs_[recent.run];
-    for (SlotId id = run.first; id < run.first + run.count; ++id)
-        if (keys_[id].attribute == key.attribute) return id;
+    const auto foundIn = [&](const SlotKey* from, const SlotKey* to) -> const SlotKey* {
+        const auto at = std::find_if(from, to, [&](const SlotKey& k) { return k.attribute == key.attribute; });
+        return at == to ? nullptr : at;
+    };
+    // Numbers are mostly asked for in the order in which they were made.
+    const SlotKey *const begin = keys_.data() + run.first, *const next = begin + recent.next;
+    const SlotKey* found = foundIn(next, begin + run.count);
+    if (!found) found = foundIn(begin, next);
+    if (found) {
+        recent.next = static_cast<uint32_t>(found - begin) + 1;
+        return static_cast<SlotId>(found - keys_.data());
+    }
     if (!run.hasMore) return absent;
     return later_.find(hashOf(key), [&](SlotId id) { return keys_[id] == key; });
 }

@@ -30,6 +30,9 @@ public:
     static constexpr SlotId absent = HashIndex::none;
 
     void reserve(size_t slots, size_t paths);
+    std::array<UnusedMemory, 4> unusedMemory() const {
+        return {unusedOf(values_), unusedOf(keys_), unusedOf(nodes_), unusedOf(runs_)};
+    }
     /// Says that no slot has a key of this path so far.
     void beginPath(uint64_t path) { remember(path, absent); }
     /// The slot of the key, or `absent`.
@@ -55,7 +58,7 @@ public:
     std::span<const SlotKey> keys() const { return keys_; }
 
 private:
-    static constexpr uint32_t longestRun = 32;  ///< is searched one by one
+    static constexpr uint32_t longestRun = 256;  ///< is searched one by one, from where the last one was found
 
     /// Slots in a row whose keys have the same path.
     struct Run {
@@ -68,9 +71,10 @@ private:
         bool isUsed = false;
         uint64_t path = 0;
         uint32_t run = absent;  ///< absent while the path has no slot
-        std::array<uint64_t, 4> attributes{};
+        uint32_t next = 0;      ///< in the run, after the slot that was found last
+        std::array<uint64_t, 16> attributes{};
 
-        uint64_t& word(uint64_t attribute) { return attributes[attribute >> 6 & 3]; }
+        uint64_t& word(uint64_t attribute) { return attributes[attribute >> 6 & 15]; }
         static uint64_t bit(uint64_t attribute) { return uint64_t{1} << (attribute & 63); }
         bool mayHave(uint64_t attribute) { return (word(attribute) & bit(attribute)) != 0; }
         void note(uint64_t attribute) { word(attribute) |= bit(attribute); }

@@ -61,7 +61,7 @@ public:
             else if (c == ',' && depth_ == 2 && isInFeatures_)
                 endFeature();
         }
-        if (lists_ != 1 || isInFeatures_ || depth_ != 0) return {};
+        if (lists_ != 1 || isInFeatures_ || depth_ != 0 || isTooDeep_) return {};
         const std::string_view before = bytes_.substr(0, begin_), after = bytes_.substr(end_);
         return SplitFile{fmt::format("{}0{}", before, after), std::move(features_)};
     }
@@ -73,7 +73,8 @@ private:
         if (depth_ == 1 && at_ < bytes_.size()) latest_ = bytes_.substr(from, at_ - from), afterLatest_ = at_ + 1;
     }
     void open(char c) {
-        if (++depth_ != 2 || c != '[' || latest_ != "features") return;
+        if (++depth_ > deepestList) isTooDeep_ = true;
+        if (depth_ != 2 || c != '[' || latest_ != "features") return;
         const std::string_view between = bytes_.substr(afterLatest_, at_ - afterLatest_);
         if (between.find(':') == between.npos || between.find_first_not_of(" \t\r\n:") != between.npos) return;
         isInFeatures_ = true;
@@ -94,7 +95,7 @@ private:
     const std::string_view bytes_;
     size_t at_ = 0;
     int depth_ = 0, lists_ = 0;
-    bool isInFeatures_ = false;
+    bool isInFeatures_ = false, isTooDeep_ = false;
     std::string_view latest_;  ///< text of the outermost object
     size_t afterLatest_ = 0, begin_ = 0, end_ = 0, feature_ = 0;
     std::vector<std::string_view> features_;
@@ -102,10 +103,7 @@ private:
 
 }  // namespace
 
-std::optional<SplitFile> splitFeatures(std::string_view bytes) {
-    if (tooDeep(bytes)) return {};
-    return Splitter(bytes).run();
-}
+std::optional<SplitFile> splitFeatures(std::string_view bytes) { return Splitter(bytes).run(); }
 
 std::string textOf(const Json& value) { return shortened(printable(value.get_ref<const std::string&>()), longestText); }
 

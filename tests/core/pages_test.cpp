@@ -2,7 +2,10 @@
 #include "modeler/core/pages.h"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <thread>
 
@@ -35,6 +38,30 @@ TEST(Pages, AnyThreadMayFreeWhatAnotherMade) {
             for (const PageVector<uint8_t>& piece : list) ASSERT_EQ(piece.back(), 7);
     }
     releasePages();
+}
+
+TEST(Pages, ClearingAheadLeavesWhatIsWritten) {
+    constexpr size_t count = 4'000'000;
+    PageVector<uint32_t> written;
+    written.reserve(count);
+    ASSERT_EQ(unusedOf(written).bytes, count * sizeof(uint32_t));
+    const std::array unused{unusedOf(written), UnusedMemory{}};
+    std::thread clearer([&] { clearAhead(unused); });
+    for (uint32_t i = 0; i < count; ++i) written.push_back(i);
+    clearer.join();
+    EXPECT_EQ(unusedOf(written).bytes, 0u);
+    for (uint32_t i = 0; i < count; ++i) ASSERT_EQ(written[i], i);
+}
+
+TEST(Pages, ClearingAheadStops) {
+    PageVector<uint32_t> written;
+    written.reserve(4'000'000);
+    const std::atomic<bool> isEnough{true};
+    clearAhead(std::array{unusedOf(written)}, &isEnough);
+    const auto* const begin = reinterpret_cast<unsigned char*>(written.data());
+    std::vector<unsigned char> isThere(unusedOf(written).bytes / 4096);
+    ASSERT_EQ(mincore(const_cast<unsigned char*>(begin), isThere.size() * 4096, isThere.data()), 0);
+    EXPECT_EQ(std::count_if(isThere.begin(), isThere.end(), [](unsigned char c) { return c & 1; }), 0);
 }
 
 }  // namespace
