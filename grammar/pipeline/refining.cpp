@@ -76,18 +76,27 @@ private:
     HalvedCells cellsAround(const std::vector<lower::ThinPart>& missing) {
         HalvedCells cells;
         double cellCount = 0;
-        for (const lower::ThinPart& part : missing) {
-            int& tried = tried_[{part.part, part.face}];
-            tried = std::max(tried + 1, lower::halvingsFor(part, grid_.cell_m));
-            if (tried > most_) continue;
+        const auto halve = [&](const lower::ThinPart& part, int halvings) {
             const double count = lower::countCellsAround(part, grid_);
-            if (cellCount + count > cellsPerTriangle * static_cast<double>(mostTriangles_)) continue;
+            if (cellCount + count > cellsPerTriangle * static_cast<double>(mostTriangles_)) return;
             cellCount += count;
             mesh::CellSet around;
             lower::addCellsAround(part, grid_, around);
-            tried = std::max(tried, halvingsIn(around));
+            int& tried = tried_[{part.part, part.face}];
+            tried = std::max(halvings, halvingsIn(around));
             for (const Vec3i cell : around.list()) cells[static_cast<size_t>(tried)].insert(cell);
+        };
+        std::vector<const lower::ThinPart*> thinner;
+        for (const lower::ThinPart& part : missing) {
+            const int before = tried_[{part.part, part.face}];
+            const int halvings = std::max(before + 1, lower::halvingsFor(part, grid_.cell_m));
+            if (halvings <= most_)
+                halve(part, halvings);
+            else if (before < most_)
+                thinner.push_back(&part);
         }
+        // Smaller cells hold more of what they don't hold yet; they come last, for a mesh may not grow so far.
+        for (const lower::ThinPart* part : thinner) halve(*part, most_);
         return cells;
     }
 
