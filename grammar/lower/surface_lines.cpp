@@ -30,6 +30,14 @@ double SurfaceLines::findOnFaces(const derive::Scope& scope, OriginId part, cons
     return spacing_m * keepOwn(part, tape, workspace, density.mostPoints);
 }
 
+void SurfaceLines::findOnLines(std::span<const Line> lines, OriginId part, const eval::Tape& tape,
+                               eval::Workspace& workspace) {
+    rays_.clear();
+    for (size_t i = 0; i < lines.size(); ++i) addLine(lines[i], i);
+    followLines(tape, workspace);
+    keepOwn(part, tape, workspace, std::max<size_t>(found_.size(), 1));
+}
+
 void SurfaceLines::evaluate(const eval::Tape& tape, eval::Workspace& workspace) {
     values_.resize(points_.size());
     eval::evaluate(tape, points_.points(), values_.data(), workspace);
@@ -53,14 +61,15 @@ double SurfaceLines::listLines(const derive::Scope& scope, int mostAlong) {
                 // Off the middle, so that no line lies in a plane of symmetry.
                 share[u] = 2 * (i + 0.535) / alongU - 1, share[v] = 2 * (j + 0.535) / alongV - 1;
                 share[axis] = -lineReach;
-                addLine(scope.point(share), scope.axes * alongAxis(axis), scope.size[axis]);
+                addLine({scope.point(share), scope.axes * alongAxis(axis), scope.size[axis]});
             }
     }
     return spacing_m;
 }
 
 /// Clips a line through a scope of such a size to the bounds.
-void SurfaceLines::addLine(Vec3d from, Vec3d along, double size_m) {
+void SurfaceLines::addLine(const Line& line, size_t number) {
+    const auto& [from, along, size_m] = line;
     double begin = 0, end = size_m * lineReach;
     for (int axis = 0; axis < 3; ++axis) {
         const double low = static_cast<double>(bounds_.lo[axis]) - cell_m_ - from[axis],
@@ -73,7 +82,8 @@ void SurfaceLines::addLine(Vec3d from, Vec3d along, double size_m) {
         begin = std::max(begin, std::min(toLow, toHigh)), end = std::min(end, std::max(toLow, toHigh));
     }
     if (begin < end)
-        rays_.push_back({from, along, begin, end, {size_m * (lineReach - 1) / 2, size_m * (lineReach + 1) / 2}, 0});
+        rays_.push_back(
+            {from, along, begin, end, {size_m * (lineReach - 1) / 2, size_m * (lineReach + 1) / 2}, number, 0});
 }
 
 /// Leaves in `found_` where lines cross the field's surface: each step is about as long as the field says.
@@ -98,7 +108,7 @@ void SurfaceLines::followLines(const eval::Tape& tape, eval::Workspace& workspac
         size_t kept = 0;
         for (size_t i = 0; i < rays_.size(); ++i) {
             Ray ray = rays_[i];
-            if ((ray.value < 0) != (values_[i] < 0)) found_.push_back({before[i], ray.place()});
+            if ((ray.value < 0) != (values_[i] < 0)) found_.push_back({before[i], ray.place(), ray.line});
             ray.value = values_[i];
             if (ray.at_m < ray.end_m) rays_[kept++] = ray;
         }

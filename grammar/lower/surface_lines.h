@@ -22,8 +22,14 @@ public:
     };
     /// A step on a line at the ends of which the field has other signs.
     struct Bracket {
-        Vec3d from, to;  ///< metres
+        Vec3d from, to;   ///< metres
+        size_t line = 0;  ///< of those that findOnLines was given
         Vec3d middle() const { return (from + to) * 0.5; }
+    };
+
+    struct Line {
+        Vec3d from, along;  ///< of length 1
+        double size_m = 0;
     };
 
     /// `bounds` hold the field's surface; cells in metres.
@@ -36,6 +42,8 @@ public:
     /// The same of a box, whose surface lies on the scope's faces: these alone are looked at.
     double findOnFaces(const derive::Scope& scope, OriginId part, const Density& density, const eval::Tape& tape,
                        eval::Workspace& workspace);
+    /// Finds where the lines cross the field's surface and that is the part's alone.
+    void findOnLines(std::span<const Line> lines, OriginId part, const eval::Tape& tape, eval::Workspace& workspace);
     std::span<const Bracket> found() const { return found_; }
 
     /// Halves the steps around crossings.
@@ -47,12 +55,13 @@ private:
         Vec3d from, along;
         double at_m = 0, end_m = 0;
         std::array<double, 2> faces_m;  ///< where it crosses the scope's faces
+        size_t line = 0;
         float value = 0;
         Vec3d place() const { return from + along * at_m; }
     };
 
     double listLines(const derive::Scope& scope, int mostAlong);
-    void addLine(Vec3d from, Vec3d along, double size_m);
+    void addLine(const Line& line, size_t number = 0);
     void followLines(const eval::Tape& tape, eval::Workspace& workspace);
     void probeFaces(const eval::Tape& tape, eval::Workspace& workspace);
     double keepOwn(OriginId part, const eval::Tape& tape, eval::Workspace& workspace, size_t mostPoints);

@@ -10,10 +10,10 @@
 
 namespace sgm::lower {
 
-/// A part that is too thin for the cells, or whose walls or shell are; a thin wall beside a cut, or a narrow gap at a
-/// face of a part: the mesh shows none of it in places.
+/// A part that is too thin for the cells, or whose walls or shell are; a thin wall beside a cut, a narrow gap at a face
+/// of a part, or a roof's eaves: the mesh shows none of it in places.
 struct ThinPart {
-    enum class Kind : uint8_t { Part, Wall, Gap };
+    enum class Kind : uint8_t { Part, Wall, Gap, Eaves };
     Kind kind = Kind::Part;
     OriginId part = 0;       ///< or the cut
     int face = -1;           ///< of its scope, where the wall or gap is: 2 · axis + (high side); −1: anywhere

@@ -12,9 +12,9 @@
 #include "grammar/lower/met_segments.h"
 #include "grammar/lower/scope_lines.h"
 #include "grammar/lower/surface_lines.h"
+#include "grammar/lower/torn_eaves.h"
 #include "modeler/eval/local_tapes.h"
 #include "modeler/field/convex.h"
-#include "modeler/field/plan_parameters.h"
 
 namespace sgm::lower {
 namespace {
@@ -168,10 +168,7 @@ double wallOf(const derive::SolidValue& solid) {
 
 /// A scope around all of a solid: eaves stand out of it, and down where the roof is steep.
 derive::Scope around(derive::Scope scope, const derive::SolidValue& solid) {
-    for (size_t i = 0; solid.primitive && i < solid.args.size(); ++i)
-        if (const auto& row = solid.primitive->parameters;
-            i < row.size() && row[i].name == field::plan_parameters::overhang.name)
-            scope.size += Vec3d{2, 4, 2} * solid.args[i].num();
+    scope.size += Vec3d{2, 4, 2} * overhangOf(solid);
     return scope;
 }
 

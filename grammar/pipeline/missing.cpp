@@ -75,12 +75,14 @@ std::map<std::pair<std::string, uint32_t>, Ornament> fineOrnaments(const derive:
     return lines;
 }
 
-/// "a 'cube' of 0.05 m", "gaps of 0.1 m at 3 faces of 'cube'".
+/// "a 'cube' of 0.05 m", "gaps of 0.1 m at 3 faces of 'cube'", "the eaves of 0.1 m of a 'hip'".
 std::string nameOf(const Line& line, lower::ThinPart::Kind kind) {
     const bool one = line.parts == 1;
     const std::string count = one ? "a" : std::to_string(line.parts);
     if (kind == lower::ThinPart::Kind::Part)
         return fmt::format("{} '{}' of {:.3g} m", count, line.symbol, line.thickness_m);
+    if (kind == lower::ThinPart::Kind::Eaves)
+        return fmt::format("the eaves of {:.3g} m of {} '{}'", line.thickness_m, count, line.symbol);
     const std::string where = line.atFaces ? fmt::format("at {} face{} of", count, one ? "" : "s")
                               : one        ? "beside"
                                            : "beside " + count;
@@ -131,7 +133,7 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
             others.emplace(file, number);
             continue;
         }
-        const bool one = line.parts == 1;
+        const bool one = line.parts == 1 && kind != lower::ThinPart::Kind::Eaves;
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", file, number),
              fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}{}",

@@ -5,8 +5,10 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "grammar/lower/thin_cells.h"
+#include "grammar/lower/torn_eaves.h"
 #include "grammar/lower/torn_rims.h"
 #include "modeler/mesh/refine.h"
 #include "modeler/mesh/region.h"
@@ -17,6 +19,7 @@ namespace {
 constexpr size_t mostGrowth = 4, leastBound = 1000000;  ///< of triangles
 constexpr double cellsPerTriangle = 16;                 ///< at most looked at, of the triangles that the mesh may have
 constexpr int mostHalvingsOfCells = 3;
+constexpr double leastMissingEaves = 0.5;  ///< share of eaves that the mesh is said to lack
 
 /// Cells to be halved, by how often.
 using HalvedCells = std::array<mesh::CellSet, mostHalvingsOfCells + 1>;
@@ -40,7 +43,15 @@ public:
         const double seconds = halvingSeconds_;
         for (Finder* const torn : {lower::findTornParts, lower::findTornRims})
             if (const auto left = hold(*torn); !left.ok()) return left;
+        auto eaves = hold(lower::findTornEaves);
+        if (!eaves.ok()) return eaves;
         if (halvingSeconds_ > seconds && !missing->empty()) missing = find(lower::findMissingParts, &*missing);
+        if (!missing.ok()) return missing;
+        for (lower::ThinPart& lacked : *eaves)
+            if (lacked.missing >= leastMissingEaves) {
+                lacked.cell_m = lacked.thickness_m;
+                missing->push_back(std::move(lacked));
+            }
         context_.stages.emplace_back("thin parts", findingSeconds_);
         if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
         return missing;
@@ -48,6 +59,11 @@ public:
 
 private:
     using Finder = decltype(lower::findMissingParts);
+    /// Around a part, at its eaves, or beside a face.
+    using Place = std::tuple<OriginId, bool, int>;
+    static Place placeOf(const lower::ThinPart& part) {
+        return {part.part, part.kind == lower::ThinPart::Kind::Eaves, part.face};
+    }
 
     Result<std::vector<lower::ThinPart>> find(Finder& finder, const std::vector<lower::ThinPart>* among) {
         const Stopwatch finding;
@@ -82,13 +98,13 @@ private:
             cellCount += count;
             mesh::CellSet around;
             lower::addCellsAround(part, grid_, around);
-            int& tried = tried_[{part.part, part.face}];
+            int& tried = tried_[placeOf(part)];
             tried = std::max(halvings, halvingsIn(around));
             for (const Vec3i cell : around.list()) cells[static_cast<size_t>(tried)].insert(cell);
         };
         std::vector<const lower::ThinPart*> thinner;
         for (const lower::ThinPart& part : missing) {
-            const int before = tried_[{part.part, part.face}];
+            const int before = tried_[placeOf(part)];
             const int halvings = std::max(before + 1, lower::halvingsFor(part, grid_.cell_m));
             if (halvings <= most_)
                 halve(part, halvings);
@@ -139,7 +155,7 @@ private:
     const int most_;
     Context& context_;
     const size_t mostTriangles_;
-    std::map<std::pair<OriginId, int>, int> tried_;  ///< halvings of the cells around a part, or beside a face
+    std::map<Place, int> tried_;  ///< halvings of the cells there
     HalvedCells halved_;
     double findingSeconds_ = 0, halvingSeconds_ = 0;
 };
