@@ -107,6 +107,8 @@ void printSummary(const BuildRequest& request, const Model& model, const pipelin
     }
     for (const std::string& file : allFiles(request.out)) fmt::print("wrote {}\n", file);
     if (!request.floor.empty()) fmt::print("wrote {}\n", request.floor);
+    if (allFiles(request.out).empty() && request.floor.empty() && request.report.empty())
+        fmt::print("wrote no file: '-o FILE' names one, as in '-o model.glb'\n");
     const size_t colliders = products.colliders.all.size();
     if (!request.out.collider.empty())
         fmt::print("{} collider{} ({})\n", colliders, colliders == 1 ? "" : "s", request.out.collider);

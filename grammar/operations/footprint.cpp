@@ -8,6 +8,7 @@
 #include "grammar/operations/plan_expressions.h"
 #include "modeler/plan/edge_words.h"
 #include "modeler/plan/edit.h"
+#include "modeler/plan/validate.h"
 
 namespace sgm::operations {
 namespace {
@@ -44,14 +45,20 @@ void checkFootprint(OperationChecker& checker, const syntax::Attribute& written)
     checker.add(std::move(out));
 }
 
+/// Why nothing is left of a plan: edges that cross by name, where some do.
+std::string faultOf(const std::optional<DrawnPlan>& drawn) {
+    const auto fault = drawn ? plan::firstFault(drawn->footprint) : std::nullopt;
+    if (fault && fault->kind == plan::FaultKind::Crossing) return plan::sentenceOf(*fault, drawn->footprint);
+    return "the plan encloses no area: its edges lie on one line, or are nearer to each other than 1 mm";
+}
+
 void applyFootprint(AttributeContext& context, const Attribute& attribute) {
     auto drawn = drawPlan(context, *attribute.plan);
     if (!drawn) return;
     // What is drawn in metres comes centred on the scope; shares of the scope and outlines of files keep their place.
     const Vec3d before = context.out.moved_m;
     context.setFootprint(std::move(drawn->footprint), attribute.span);
-    if (context.out.vanishes)
-        context.fail("the plan encloses no area: its edges cross, or lie on one line", attribute.span);
+    if (context.out.vanishes) context.fail(faultOf(drawPlan(context, *attribute.plan)), attribute.span);
     if (!drawn->keepsPlace) context.out.moved_m = before;
 }
 

@@ -148,7 +148,10 @@ constinit const Operation move{
 
 constinit const Operation turn{
     .name = "turn",
-    .doc = "Turns the shape about its own centre.",
+    .doc =
+        "Turns the shape about its own centre. Sizes are along its own axes, which turn with it: 'cylinder turn "
+        "(90deg, "
+        "0deg, 0deg) size (3m, 8m, 3m)' lies along z, 8 m long.",
     .example = "cube turn 30deg",
     .arguments = turnArguments,
     .traits = {.stacks = true, .beforeShape = true, .turnsShape = true},

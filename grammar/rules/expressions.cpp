@@ -80,6 +80,7 @@ Typed unknownName(CheckContext& ctx, const Place& place, const Written& e) {
         hint = fmt::format("a check may ask for {} and count(Name)", fmt::join(figureNames(ctx.grammar), ", "));
     if (std::find(colorWords.begin(), colorWords.end(), e.text) != colorWords.end() && hint.empty())
         hint = "a colour is written #rrggbb, as #c8b090";
+    if (e.text == "rest") hint = "write '~1' for what the other parts of a split leave";
     if (ctx.names.symbols.contains(e.text))
         return fail(ctx, e.span, fmt::format("'{}' is a shape, not a value", e.text));
     return failUnknown(ctx, e.span, e.text, fmt::format("unknown name '{}'", e.text), std::move(hint));

@@ -43,15 +43,29 @@ bool isSized(const Element& e) {
            std::any_of(e.attributes.begin(), e.attributes.end(), sizes);
 }
 
-/// Warns of a share among the sizes and moves of an element whose scope is that of a start, 1 m.
-void findSharesOfNothing(const Element& element, const std::vector<Value>& params, syntax::Diagnostics& diagnostics) {
+/// Whether 100 % of a width stands beside a length, as in the size of a roof that is meant for what stands already.
+bool isWholeBesideLength(const Value& v) {
+    bool hasWhole = false, hasLength = false;
+    for (size_t i = 0; i < std::min<size_t>(v.count, v.units.size()); ++i) {
+        hasWhole |= i != 1 && v.units[i] == Unit::Share && v.n[i] == 1;
+        hasLength |= v.units[i] == Unit::Metre && v.n[i] != 0;
+    }
+    return hasWhole && hasLength;
+}
+
+/// Warns of a share among the sizes and moves of an element whose scope is that of a start, 1 m; of 100 % where it
+/// `joins` what stands.
+void findSharesOfNothing(const Element& element, bool joins, const std::vector<Value>& params,
+                         syntax::Diagnostics& diagnostics) {
     for (const Attribute& a : element.attributes) {
         const bool moves = a.operation->phase == Operation::Phase::Scope && takes(a, syntax::ArgumentType::Vector);
         if (!givesSize(a) && !moves) continue;
         const auto value = fold(a.args[0], params);
-        if (value ? isShare(*value) : holdsShare(a.args[0]))
+        const bool isWhole = joins && givesSize(a) && value && isWholeBesideLength(*value);
+        if (isWhole || (value ? isShare(*value) : holdsShare(a.args[0])))
             diagnostics.warning(a.span, "a share of what? A start's own scope is 1m",
-                                "write lengths, such as '.5m' for 50%");
+                                isWhole ? "write lengths; in a rule of what the start names 100% is that shape's size"
+                                        : "write lengths, such as '.5m' for 50%");
     }
 }
 
@@ -89,7 +103,7 @@ void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostic
             const bool hasSize = std::any_of(chain[0].prefix.begin(), chain[0].prefix.end(), givesSize);
             for (const Element& element : chain)
                 if (&element == &chain[0] ? !hasSize : element.inMatchedFrame && !element.on)
-                    findSharesOfNothing(element, params, diagnostics);
+                    findSharesOfNothing(element, &element != &chain[0], params, diagnostics);
         }
     }
 }

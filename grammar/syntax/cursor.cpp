@@ -74,9 +74,12 @@ bool Cursor::close(const Token& open) {
     const std::string_view closing = opening == "(" ? ")" : opening == "[" ? "]" : "}";
     const bool isValue = previous(1).kind == Token::Kind::Number || previous(1).kind == Token::Kind::Word;
     if (opening == "(" && isValue && at(Token::Kind::Number)) {
-        fail(previous(1).kind == Token::Kind::Word ? "two values stand side by side" : "two numbers stand side by side",
-             "put ',' between them: " +
-                 quoted("(" + std::string(text(previous(1))) + ", " + std::string(peekText()) + " …)"));
+        const std::string last(text(previous(1))), next(peekText());
+        const bool isName = previous(1).kind == Token::Kind::Word;
+        fail(
+            isName ? "two values stand side by side" : "two numbers stand side by side",
+            "put ',' between them: " + quoted("(" + last + ", " + next + " …)") +
+                (isName && open.glued ? ", or ':' behind the name of an argument: " + quoted(last + ": " + next) : ""));
         return false;
     }
     return expect(closing, "to close " + quoted(opening) + " of line " + std::to_string(source_.place(open.begin).line),

@@ -54,7 +54,7 @@ std::string defaultFirst(const Cursor& cursor, const Name& name) {
         part += (i > 0 && !cursor.peek(i).glued ? " " : "") + std::string(cursor.peekText(i));
     }
     if (value == "…" && cursor.at("in") && cursor.at("..", 2)) value = std::string(cursor.peekText(1));
-    return "write " + quoted("param " + name.text + " = " + value + " " + part);
+    return "write 'param " + name.text + " = " + value + " " + part + "'";
 }
 
 /// The line with its choices behind 'of': 'param wall = brick of brick, stone' for 'param wall = brick | stone'.
@@ -65,7 +65,7 @@ std::string choicesBehindOf(const Cursor& cursor, const ParamDecl& param) {
     std::string choices = first;
     for (size_t i = 0; cursor.at("|", i) && cursor.peek(i + 1).kind == Token::Kind::Word; i += 2)
         choices += ", " + std::string(cursor.peekText(i + 1));
-    return "write " + quoted("param " + param.name.text + " = " + first + " of " + choices);
+    return "write 'param " + param.name.text + " = " + first + " of " + choices + "'";
 }
 
 void readParam(Cursor& cursor, Ast& ast) {

@@ -180,6 +180,13 @@ std::optional<Hint> besideNumber(const Cursor& cursor, std::string_view message)
                     "write " + quoted(written + std::string(text))};
     if (isPlain && token.kind == Token::Kind::Word)
         if (auto foreign = foreignUnit(cursor, number, token)) return foreign;
+    if (isPlain && token.kind == Token::Kind::Text && token.glued && text.starts_with('"')) {
+        const double length_m = std::strtod(written.c_str(), nullptr) * inch_m;
+        SourceSpan mark = cursor.span(token);
+        mark.end = mark.begin + 1;
+        return Hint{join(cursor.span(number), mark), "'\"' is no unit",
+                    "write " + quoted(fmt::format("{:.4g}m", length_m))};
+    }
     if (text == ";" && message.starts_with("expected ')'"))
         return Hint{cursor.span(token), "';' doesn't stand between numbers", "write ','"};
     if (token.kind == Token::Kind::Word && !token.glued && message.starts_with("expected ')'") &&

@@ -153,7 +153,16 @@ Field shedRoof(const PrimitiveInput& in) {
 
 Field butterflyRoof(const PrimitiveInput& in) {
     const plan::Vec2 valley = in.arguments[4].value[0] < .5 ? plan::Vec2{1, 0} : plan::Vec2{0, 1};
-    return covered(in, {0, 1, 2, 3}, [&](const PlanField& plan, const RoofFoot& foot) {
+    std::vector<Argument> arguments(in.arguments.begin(), in.arguments.end());
+    const Quantity pitch = quantity(arguments[0]), thickness = quantity(arguments[3]);
+    if (thickness.value > 0) {  // its slopes stand so high over the foot that there is room for it under the valley
+        Argument& fascia = arguments[2];
+        fascia.node[0] = max(fascia.node[0], thickness.node / cos(pitch.node));
+        fascia.value[0] = std::max(fascia.value[0], thickness.value / std::cos(pitch.value));
+    }
+    PrimitiveInput raised = in;
+    raised.arguments = arguments;
+    return covered(raised, {0, 1, 2, 3}, [&](const PlanField& plan, const RoofFoot& foot) {
         return field::butterflyRoof(plan, foot, quantity(in.arguments[0]), valley);
     });
 }

@@ -1,11 +1,13 @@
 // Eaves and parapets of roofs in the meshes of models: halved cells hold them, or they are named.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string_view>
 
 #include "grammar/lower/torn_eaves.h"
 #include "grammar/pipeline/missing.h"
 #include "grammar/pipeline/refining.h"
+#include "modeler/core/conventions.h"
 #include "modeler/mesh/validate.h"
 #include "tests/pipeline/crisp_model.h"
 
@@ -84,6 +86,18 @@ TEST(Eaves, ThatNoHalvedCellsHoldAreNamed) {
     EXPECT_NE(warnings[0].text.find("the eaves of 0.1"), std::string::npos) << warnings[0].text;
     EXPECT_NE(warnings[0].text.find("of 2 'pyramidRoof' are too thin for the mesh's cells of 3 m"), std::string::npos)
         << warnings[0].text;
+}
+
+/// The slopes of a butterfly roof came to nothing at its valley, and fell apart there.
+TEST(ButterflyRoofs, AreAsThickAsTheirCover) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\nstart A -> footprint rect(8, 20) extrude 1m Roof\n"
+        "rule Roof -> butterflyRoof(12deg, cover: .3m, valley: z)\n",
+        context);
+    const mesh::MeshFigures figures = mesh::measure(meshed(model, 64).mesh);
+    EXPECT_NEAR(figures.volume_m3, 8 * 20 * .3 / std::cos(radians(12)), .01);
+    EXPECT_EQ(figures.components, 1u);
 }
 
 /// Cells that would have to be halved four times to hold a turned wall for certain hold this one after three.

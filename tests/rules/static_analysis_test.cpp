@@ -150,6 +150,11 @@ TEST(Shares, OfAStartsOwnScopeAreTold) {
     EXPECT_EQ(checkedBody("start A -> cube size 4 move (50%, 0, 0)\n").messages(),
               "warning: a share of what? A start's own scope is 1m\n");
     EXPECT_EQ(checkedBody("start A -> cube + cube size 50% at +x\n").messages(), "");
+    const auto roofed = [](const std::string& size) {
+        return checked("grammar 2\nstart A -> cube size (8, 15, 8) + cube size " + size + " at +y\n").messages();
+    };
+    EXPECT_EQ(roofed("(100%, 6m, 100%)"), "warning: a share of what? A start's own scope is 1m\n");
+    EXPECT_EQ(roofed("100%"), "");
     EXPECT_EQ(checkedBody("start A -> size 4 cube size 50%\n").messages(), "");
 }
 
