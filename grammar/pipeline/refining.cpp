@@ -49,7 +49,7 @@ public:
         if (!missing.ok()) return missing;
         for (lower::ThinPart& lacked : *eaves)
             if (lacked.missing >= leastMissingEaves) {
-                lacked.cell_m = lacked.thickness_m;
+                lacked.cell_m = lacked.thickness_m;  // cells that hold it without being halved
                 missing->push_back(std::move(lacked));
             }
         context_.stages.emplace_back("thin parts", findingSeconds_);

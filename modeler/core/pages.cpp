@@ -135,11 +135,12 @@ void clearAhead(std::span<const UnusedMemory> memory, const std::atomic<bool>* i
     constexpr size_t mostSteps = 64;  // of each
     for (size_t step = 0; step < mostSteps; ++step)
         for (const UnusedMemory& m : memory) {
-            const size_t begin = reinterpret_cast<uintptr_t>(m.begin), pages = m.bytes / hugePage;
-            const size_t first = (begin + hugePage - 1) / hugePage + pages * step / mostSteps,
-                         last = std::min((begin + hugePage - 1) / hugePage + pages * (step + 1) / mostSteps,
-                                         (begin + m.bytes) / hugePage);
-            if (first >= last) continue;
+            // Whole pages alone: others hold something else.
+            const size_t from = reinterpret_cast<uintptr_t>(m.begin), begin = (from + hugePage - 1) / hugePage,
+                         end = std::max((from + m.bytes) / hugePage, begin),
+                         first = begin + (end - begin) * step / mostSteps,
+                         last = begin + (end - begin) * (step + 1) / mostSteps;
+            if (first == last) continue;
             if (isEnough && isEnough->load(std::memory_order_relaxed)) return;
             if (madvise(reinterpret_cast<void*>(first * hugePage), (last - first) * hugePage, MADV_POPULATE_WRITE) != 0)
                 return;

@@ -44,8 +44,16 @@ inline Model modelOf(const std::string& text, Context& context) {
     return std::move(*model);
 }
 
-/// `resolution` cells along the longest side, halved up to `halvings` times around thin parts. A text with errors fails
-/// the test, and the program ends.
+/// `resolution` cells along the longest side, halved up to `halvings` times around thin parts; on two threads.
+inline MeshedModel meshed(const Model& model, int resolution, int halvings = 3) {
+    Context context{nullptr, 2};
+    auto made =
+        makeMesh(model, gridOf(model, resolution), {.surface = mesh::Surface::Crisp, .halvings = halvings}, context);
+    EXPECT_TRUE(made.ok());
+    return std::move(*made);
+}
+
+/// The same with the model of a text. A text with errors fails the test, and the program ends.
 inline CrispModel crispModel(const std::string& text, int resolution, Context& context, int halvings = 3) {
     Model model = modelOf(text, context);
     const mesh::Grid grid = gridOf(model, resolution);

@@ -20,14 +20,6 @@ namespace {
 
 std::string sceneText(const std::string& name) { return fileText("tests/mesh/scenes/" + name + ".sgm"); }
 
-MeshedModel meshed(const Model& model, int resolution, int halvings) {
-    Context context{nullptr, 2};
-    auto made =
-        makeMesh(model, gridOf(model, resolution), {.surface = mesh::Surface::Crisp, .halvings = halvings}, context);
-    EXPECT_TRUE(made.ok());
-    return std::move(*made);
-}
-
 std::vector<lower::ThinPart> missingParts(const Model& model, const MeshedModel& meshed) {
     auto found = findMissingParts(model, meshed, 2, nullptr);
     EXPECT_TRUE(found.ok());

@@ -14,14 +14,6 @@
 namespace sgm::pipeline {
 namespace {
 
-MeshedModel meshed(const Model& model, int resolution, int halvings = 3) {
-    Context context{nullptr, 2};
-    auto made =
-        makeMesh(model, gridOf(model, resolution), {.surface = mesh::Surface::Crisp, .halvings = halvings}, context);
-    EXPECT_TRUE(made.ok());
-    return std::move(*made);
-}
-
 Model houseWith(const std::string& roof, const std::string& turn = {}) {
     Context context{nullptr, 2};
     return modelOf("grammar 2\nstart A -> footprint rect(16, 9) extrude 4m House" + turn + "\nrule House -> cube + " +
@@ -36,8 +28,8 @@ size_t tornEaves(const Model& model, const MeshedModel& made) {
         ->size();
 }
 
-/// Wedges that come to nothing at their ends, and boards of 15 cm, in cells of a metre: the volume was up to 9 m³ less.
-/// Of a flat wedge the outer third, 3 m³, may still be missing in cells of a metre.
+/// Wedges that come to nothing at their ends, and boards of 15 cm, in cells of a metre: the volume was up to 9 m³
+/// less. Of a flat wedge the outer third, 3 m³, is still missing in these.
 TEST(Eaves, AreThereInCellsOfAnySize) {
     const std::pair<const char*, double> roofs[] = {{"hipRoof(40deg, overhang: .5m)", 802.28},
                                                     {"hipRoof(40deg, overhang: .5m, fascia: .15m)", 827.78},
