@@ -3,6 +3,8 @@
 // by hash; most questions end at a bit that isn't set.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,7 +16,8 @@ namespace sgm::mesh {
 
 /// The box around the corners of a triangle, metres.
 inline Box3f boxOf(std::span<const Vec3f> positions, const Triangle& t) {
-    return hull(hull(Box3f{positions[t.x], positions[t.x]}, positions[t.y]), positions[t.z]);
+    const Vec3f a = positions[t.x], b = positions[t.y], c = positions[t.z];
+    return {min(min(a, b), c), max(max(a, b), c)};
 }
 
 /// The cube that reaches so many metres from its middle.
@@ -27,35 +30,28 @@ class BoxFinder {
 public:
     /// O(n) in the boxes, which have to stay.
     explicit BoxFinder(std::span<const Box3f> boxes);
+    /// Calls visit(t, found) for the triangles t in [begin, end) whose boxes meet some, in their order; `found` as
+    /// find() gives it, cornersOf(t) numbers in `positions`. Triangles that follow each other are asked for together
+    /// first, as those of a mesh lie beside each other.
+    template <class CornersOf, class Visit>
+    void visitMeeting(std::span<const Vec3f> positions, size_t begin, size_t end, CornersOf&& cornersOf,
+                      Visit&& visit) const;
     /// The boxes that meet `box`, ascending. O(1) as a rule where none is near and `box` is about as large as they are.
     void find(const Box3f& box, std::vector<uint32_t>& found) const {
         found.clear();
         Cells cells;
-        if (cellsOf(box, cells) && isMarked(cells.coarse())) findIn(cells, box, found);
+        if (cellsOf(box, cells) && isCoarseMarked(cells)) findIn(cells, box, found);
     }
 
 private:
+    static constexpr size_t askedTogether = 8;
     struct Entry {
         uint64_t cell;
         uint32_t box;
-        friend bool operator<(const Entry& a, const Entry& b) {
-            return a.cell != b.cell ? a.cell < b.cell : a.box < b.box;
-        }
     };
-    static constexpr int coarseBits = 2;
     /// Cells that a box meets.
     struct Cells {
         Vec3i first, last;
-        /// As many as two to the power of `coarseBits` cells along an axis make one.
-        Cells coarse() const {
-            const auto of = [](Vec3i cell) {
-                return Vec3i{cell.x >> coarseBits, cell.y >> coarseBits, cell.z >> coarseBits};
-            };
-            return {of(first), of(last)};
-        }
-        /// Calls `visit` with the number of each until it returns true; whether one did.
-        template <class Visit>
-        bool any(Visit&& visit) const;
     };
     static uint64_t numberOf(Vec3i cell) {
         return static_cast<uint64_t>(cell.z) << 42 | static_cast<uint64_t>(cell.y) << 21 |
@@ -65,36 +61,59 @@ private:
     bool cellsOf(const Box3f& box, Cells& cells) const {
         const Vec3f lo = (max(box.lo, around_.lo) - around_.lo) * cellsPerMetre_,
                     hi = (min(box.hi, around_.hi) - around_.lo) * cellsPerMetre_;
-        if (hi.x < lo.x || hi.y < lo.y || hi.z < lo.z) return false;
+        if (!(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z)) return false;  // also where there are no boxes
         cells = {{static_cast<int>(lo.x), static_cast<int>(lo.y), static_cast<int>(lo.z)},
                  {static_cast<int>(hi.x), static_cast<int>(hi.y), static_cast<int>(hi.z)}};
         return true;
     }
-    /// Whether one of some coarse cells has entries, or seems to.
-    bool isMarked(const Cells& coarse) const {
-        if (coarse.first == coarse.last) return coarseMarks_.has(numberOf(coarse.first));
-        return isOneMarked(coarse);
+    Vec3i coarse(Vec3i cell) const { return {cell.x >> coarseBits_, cell.y >> coarseBits_, cell.z >> coarseBits_}; }
+    size_t rowOf(int y, int z) const { return (static_cast<size_t>(z) * rows_ + static_cast<size_t>(y)) * rowWords_; }
+    /// Whether one of the coarse cells around some cells has entries.
+    bool isCoarseMarked(const Cells& cells) const {
+        const Vec3i first = coarse(cells.first), last = coarse(cells.last);
+        const size_t begin = static_cast<size_t>(first.x) / 64, end = static_cast<size_t>(last.x) / 64;
+        const uint64_t head = ~uint64_t{0} << first.x % 64, tail = ~uint64_t{0} >> (63 - last.x % 64);
+        for (int z = first.z; z <= last.z; ++z)
+            for (int y = first.y; y <= last.y; ++y) {
+                const uint64_t* const row = coarseMarks_.data() + rowOf(y, z);
+                for (size_t w = begin; w <= end; ++w)
+                    if (row[w] & (w == begin ? head : ~uint64_t{0}) & (w == end ? tail : ~uint64_t{0})) return true;
+            }
+        return false;
     }
-    bool isOneMarked(const Cells& coarse) const;
     void findIn(const Cells& cells, const Box3f& box, std::vector<uint32_t>& found) const;
-
-    /// A bit for each hash of a cell.
-    class Marks {
-    public:
-        void set(uint64_t cell) { words_[placeOf(cell) / 64] |= uint64_t{1} << placeOf(cell) % 64; }
-        bool has(uint64_t cell) const { return words_[placeOf(cell) / 64] >> placeOf(cell) % 64 & 1; }
-
-    private:
-        static constexpr int bits = 20;
-        static size_t placeOf(uint64_t cell) { return static_cast<size_t>(cell * 0x9e3779b97f4a7c15u >> (64 - bits)); }
-        std::vector<uint64_t> words_ = std::vector<uint64_t>((size_t{1} << bits) / 64);
-    };
+    std::vector<Entry> listEntries();
+    void order(std::span<const Entry> entries);
 
     std::span<const Box3f> boxes_;
     Box3f around_;
     float cellsPerMetre_ = 0;
-    std::vector<Entry> entries_;  ///< ascending
-    Marks marks_, coarseMarks_;   ///< of cells that have entries
+    int coarseBits_ = 0;                 ///< as many as two to the power of this cells along an axis make a coarse one
+    size_t rows_ = 0, rowWords_ = 0;     ///< of the coarse cells: rows along x in a layer, words a row
+    std::vector<uint64_t> coarseMarks_;  ///< a bit a coarse cell, set where it has entries
+    int bucketBits_ = 0;
+    std::vector<uint32_t> bucketBegin_;  ///< by hash of a cell and one more: its first entry
+    std::vector<Entry> entries_;         ///< by bucket
 };
+
+template <class CornersOf, class Visit>
+void BoxFinder::visitMeeting(std::span<const Vec3f> positions, size_t begin, size_t end, CornersOf&& cornersOf,
+                             Visit&& visit) const {
+    std::array<Box3f, askedTogether> boxes;
+    std::vector<uint32_t> found;
+    for (size_t first = begin; first < end; first += askedTogether) {
+        const size_t count = std::min(askedTogether, end - first);
+        Box3f all;
+        for (size_t i = 0; i < count; ++i) {
+            boxes[i] = boxOf(positions, cornersOf(first + i));
+            all = {min(all.lo, boxes[i].lo), max(all.hi, boxes[i].hi)};
+        }
+        if (Cells cells; !cellsOf(all, cells) || !isCoarseMarked(cells)) continue;
+        for (size_t i = 0; i < count; ++i) {
+            find(boxes[i], found);
+            if (!found.empty()) visit(first + i, std::span<const uint32_t>(found));
+        }
+    }
+}
 
 }  // namespace sgm::mesh

@@ -43,7 +43,7 @@ public:
                 hasOwn[v] = 1;
             }
         std::stable_sort(corners_.begin(), corners_.end());
-        addOthers(input, flat, regions, hasOwn);
+        addOthers(input, flat, regions, planes, hasOwn);
     }
 
     /// Those of a vertex on a region; none where all of them have the vertex's normal.
@@ -55,19 +55,24 @@ public:
 private:
     /// Corners with the vertex's normal count as well: one that differs, as of a sliver, doesn't speak for all.
     void addOthers(const Mesh& input, const FlatMesh& flat, const SurfaceRegions& regions,
-                   const PageVector<uint8_t>& hasOwn) {
+                   std::span<const Plane> planes, const PageVector<uint8_t>& hasOwn) {
+        if (corners_.empty()) return;
         std::vector<InputCorner> others;
         for (size_t i = 0; i < input.chunks.size(); ++i) {
             const FlatMesh::Part& part = flat.parts[i];
             auto own = input.chunks[i].cornerNormals.begin();
             const auto end = input.chunks[i].cornerNormals.end();
-            for (uint32_t corner = 0; corner < 3 * part.triangles; ++corner) {
-                while (own != end && own->corner < corner) ++own;
-                const uint32_t t = part.firstTriangle + corner / 3;
-                const uint32_t v = flat.triangles[t][static_cast<int>(corner % 3)];
-                if (!hasOwn[v] || (own != end && own->corner == corner)) continue;
-                const uint32_t region = regions.ofTriangle[t];
-                if (!at(v, region).empty()) others.push_back({v, region, normalOfVertex(input, flat, v)});
+            for (uint32_t local = 0; local < part.triangles; ++local) {
+                const uint32_t t = part.firstTriangle + local, region = regions.ofTriangle[t];
+                if (planes[region].planar()) continue;
+                while (own != end && own->corner < 3 * local) ++own;
+                for (uint32_t k = 0; k < 3; ++k) {
+                    const uint32_t v = flat.triangles[t][static_cast<int>(k)];
+                    const bool isOwn = own != end && own->corner == 3 * local + k;
+                    if (isOwn) ++own;
+                    if (hasOwn[v] && !isOwn && !at(v, region).empty())
+                        others.push_back({v, region, normalOfVertex(input, flat, v)});
+                }
             }
         }
         if (others.empty()) return;

@@ -71,14 +71,16 @@ public:
     /// What is cut off at so many times the depth of the highest vertex; see `fanAt`. Nothing where the field on the
     /// fan isn't near 0, and unless `takesConfined`, where the border goes through a confined vertex.
     std::optional<TipFan> fan(double cut, bool takesConfined) {
-        top_ = vertex_, apex_ = guess_, lacksConfined_ = false;
+        top_ = vertex_, apex_ = guess_, lacksConfined_ = reachesTop_ = false;
         cutOff_.clear(surface_.positions.size()), cutOff_.insert(top_);
         triangles_.assign(around(top_).begin(), around(top_).end());
         axis_ = axisOf();
         double within_m = apexSlack * surface_.cell_m;
         for (int round = 0; round < rounds; ++round) {
-            if (isTooNear()) return {};
-            if (!gather(cut * depthOf(top_)) || isTooNear()) return {};
+            if (isTooNear() || !gather(cut * depthOf(top_))) {
+                reachesTop_ = round == 0;
+                return {};
+            }
             const auto meeting = meetingOf(within_m);
             if (!meeting || meeting->error > within_m) return {};
             apex_ = meeting->point;
@@ -96,6 +98,10 @@ public:
     /// Whether the last fan wasn't made for a confined vertex alone: else taking those changes nothing.
     bool lacksConfined() const { return lacksConfined_; }
 
+    /// Whether the last fan wasn't made since what is cut off below the first guess of the apex comes too near to that
+    /// or is too large: deeper cuts have it as well.
+    bool reachesTop() const { return reachesTop_; }
+
 private:
     Vec3d at(uint32_t vertex) const { return surface_.positions[vertex].as<double>(); }
     double depthOf(uint32_t vertex) const { return dot(apex_ - at(vertex), axis_); }
@@ -108,7 +114,7 @@ private:
     }
 
     /// The vertices that can be reached from the top above some depth, and their triangles; the highest becomes the
-    /// top. False where there are too many.
+    /// top. False where there are too many, or one is too near to the apex.
     bool gather(double end) {
         MarkedNumbers& gathered = surface_.scratch.triangles;
         gathered.clear(surface_.triangles.size());
@@ -120,6 +126,7 @@ private:
             const uint32_t v = pending.back();
             pending.pop_back();
             if (depthOf(v) < depthOf(top_)) top_ = v;
+            if (isTooNear()) return false;
             for (const uint32_t t : around(v)) {
                 ++aroundVertices;
                 if (!gathered.insert(t)) continue;
@@ -266,7 +273,7 @@ private:
     const Axis axisKind_;
     uint32_t top_ = 0;
     Vec3d apex_, axis_;
-    bool lacksConfined_ = false;
+    bool lacksConfined_ = false, reachesTop_ = false;
     MarkedNumbers& cutOff_;            ///< vertices
     std::vector<uint32_t> triangles_;  ///< with such vertices, ascending
 };
@@ -304,6 +311,7 @@ std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d ap
                 if (!isOpen[i]) continue;
                 auto fan = builder.fan(cuts[i], takesConfined);
                 isOpen[i] = builder.lacksConfined();
+                if (builder.reachesTop()) std::fill(isOpen.begin() + static_cast<ptrdiff_t>(i), isOpen.end(), false);
                 if (!fan) continue;
                 if (fan->error_m < onSurface * surface.cell_m) return fan;
                 if (!first) first = std::move(fan);
@@ -323,11 +331,11 @@ void dropCrossing(const TipSurface& surface, std::vector<TipFan>& fans, const Pr
     }
     const BoxFinder finder(boxes);
     std::vector<std::vector<uint32_t>> near(fans.size());
-    std::vector<uint32_t> found;
-    for (uint32_t t = 0; t < surface.triangles.size(); ++t) {
-        finder.find(boxOf(surface.positions, surface.triangles[t].corners), found);
-        for (const uint32_t i : found) near[i].push_back(t);
-    }
+    finder.visitMeeting(
+        surface.positions, 0, surface.triangles.size(), [&](size_t t) { return surface.triangles[t].corners; },
+        [&](size_t t, std::span<const uint32_t> found) {
+            for (const uint32_t i : found) near[i].push_back(static_cast<uint32_t>(t));
+        });
     size_t kept = 0;
     for (size_t i = 0; i < fans.size() && !cancelled(progress); ++i) {
         const auto meets = [&](const Box3f& box) { return !intersection(box, boxes[i]).empty(); };

@@ -1,12 +1,14 @@
 #include "modeler/mesh/tips.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
 #include "modeler/core/parallel.h"
 #include "modeler/mesh/box_finder.h"
 #include "modeler/mesh/fanned_mesh.h"
+#include "modeler/mesh/one_chunk.h"
 #include "modeler/mesh/tip_fan.h"
 
 namespace sgm::mesh {
@@ -102,44 +104,42 @@ private:
         });
     }
 
-    /// Calls `visit` with every triangle of a chunk of which wants(corners in the mesh) says so.
-    template <class Wants, class Visit>
-    void visitTriangles(size_t c, Wants&& wants, Visit&& visit) const {
+    TipTriangle triangleAt(size_t c, uint32_t t) const {
         const Chunk& chunk = mesh_.chunks[c];
-        auto own = chunk.cornerNormals.begin();
-        for (uint32_t t = 0; t < chunk.triangles.size(); ++t) {
-            const auto first = own;
-            while (own != chunk.cornerNormals.end() && own->corner / 3 == t) ++own;
-            const Triangle corners = chunk.inMesh(chunk.triangles[t]);
-            if (!wants(corners)) continue;
-            TipTriangle at{corners,
-                           {normals_[corners.x], normals_[corners.y], normals_[corners.z]},
-                           firstTriangle_[c] + t,
-                           chunk.origins[t],
-                           chunk.labels.empty() ? 0 : chunk.labels[t],
-                           0};
-            for (auto n = first; n != own; ++n) {
-                at.normals[n->corner % 3] = n->normal;
-                at.ownNormals |= static_cast<uint8_t>(1u << n->corner % 3);
-            }
-            visit(at);
+        const Triangle corners = chunk.inMesh(chunk.triangles[t]);
+        TipTriangle at{corners,
+                       {normals_[corners.x], normals_[corners.y], normals_[corners.z]},
+                       firstTriangle_[c] + t,
+                       chunk.origins[t],
+                       chunk.labels.empty() ? 0 : chunk.labels[t],
+                       0};
+        const auto isBefore = [](const CornerNormal& n, uint32_t corner) { return n.corner < corner; };
+        for (auto n = std::lower_bound(chunk.cornerNormals.begin(), chunk.cornerNormals.end(), 3 * t, isBefore);
+             n != chunk.cornerNormals.end() && n->corner / 3 == t; ++n) {
+            at.normals[n->corner % 3] = n->normal;
+            at.ownNormals |= static_cast<uint8_t>(1u << n->corner % 3);
         }
+        return at;
     }
 
-    /// The triangles of which wants(corners in the mesh) says so, in their order.
-    template <class Wants>
-    std::vector<TipTriangle> trianglesThat(Wants&& wants) const {
+    /// The triangles of all chunks that listIn(chunk, numbers) lists, in their order.
+    template <class ListIn>
+    std::vector<TipTriangle> trianglesOf(ListIn&& listIn) const {
         std::vector<std::vector<TipTriangle>> found(mesh_.chunks.size());
-        inChunks([&](size_t c) { visitTriangles(c, wants, [&](const TipTriangle& t) { found[c].push_back(t); }); });
+        inChunks([&](size_t c) {
+            std::vector<uint32_t> numbers;
+            listIn(mesh_.chunks[c], numbers);
+            for (const uint32_t t : numbers) found[c].push_back(triangleAt(c, t));
+        });
         std::vector<TipTriangle> all;
         for (const auto& list : found) all.insert(all.end(), list.begin(), list.end());
         return all;
     }
     std::vector<TipTriangle> trianglesIn(const BoxFinder& finder) const {
-        return trianglesThat([&](const Triangle& corners) {
-            std::vector<uint32_t> found;
-            finder.find(boxOf(positions_, corners), found);
-            return !found.empty();
+        return trianglesOf([&](const Chunk& chunk, std::vector<uint32_t>& numbers) {
+            finder.visitMeeting(
+                positions_, 0, chunk.triangles.size(), [&](size_t t) { return chunk.inMesh(chunk.triangles[t]); },
+                [&](size_t t, std::span<const uint32_t>) { numbers.push_back(static_cast<uint32_t>(t)); });
         });
     }
 
@@ -149,9 +149,9 @@ private:
         float count = 0;
         bool isCreased = false;
 
-        void add(const TipTriangle& t) {
-            normals += t.normals[0] + t.normals[1] + t.normals[2], count += 3;
-            isCreased |= t.ownNormals != 0;
+        void add(Vec3f ofTriangle, bool hasOwnNormals) {
+            normals += ofTriangle, count += 3;
+            isCreased |= hasOwnNormals;
         }
         bool isWide() const {
             const float most = (isCreased ? widestCreased : widestSmooth) * count;
@@ -162,28 +162,33 @@ private:
     PageVector<Sum> sumsOfNormals() const {
         PageVector<Sum> sums;
         sums.resize(positions_.size());
-        // Triangles at vertices that other chunks own are added afterwards, in the chunks' order.
-        std::vector<std::vector<TipTriangle>> borrowing(mesh_.chunks.size());
-        const auto add = [&](const Chunk& chunk, const TipTriangle& t, bool own) {
-            for (int k = 0; k < 3; ++k) {
-                const uint32_t v = t.corners[k] - chunk.firstVertex;
-                if ((v < chunk.positions.size()) == own) sums[t.corners[k]].add(t);
-            }
+        struct Addend {
+            uint32_t vertex;
+            Vec3f ofTriangle;
+            bool hasOwnNormals;
         };
+        std::vector<std::vector<Addend>> borrowed(mesh_.chunks.size());  // at vertices that other chunks own
         inChunks([&](size_t c) {
             const Chunk& chunk = mesh_.chunks[c];
             std::fill_n(sums.data() + chunk.firstVertex, chunk.positions.size(), Sum{});
-            visitTriangles(
-                c, [](const Triangle&) { return true; },
-                [&](const TipTriangle& t) {
-                    add(chunk, t, true);
-                    const Triangle& corners = chunk.triangles[t.number - firstTriangle_[c]];
-                    if ((corners.x | corners.y | corners.z) & ghostBit) borrowing[c].push_back(t);
-                });
+            visitTriangles(chunk, [&](uint32_t t, std::span<const CornerNormal> own) {
+                const Triangle& corners = chunk.triangles[t];
+                std::array<Vec3f, 3> normals;
+                for (size_t k = 0; k < 3; ++k) normals[k] = normals_[chunk.inMesh(corners[static_cast<int>(k)])];
+                for (const CornerNormal& n : own) normals[n.corner % 3] = n.normal;
+                const Vec3f sum = normals[0] + normals[1] + normals[2];
+                for (int k = 0; k < 3; ++k) {
+                    const uint32_t v = chunk.inMesh(corners[k]);
+                    if (corners[k] & ghostBit)
+                        borrowed[c].push_back({v, sum, !own.empty()});
+                    else
+                        sums[v].add(sum, !own.empty());
+                }
+            });
         });
         if (cancelled(progress_)) return {};
-        for (size_t c = 0; c < borrowing.size(); ++c)
-            for (const TipTriangle& t : borrowing[c]) add(mesh_.chunks[c], t, false);
+        for (const auto& list : borrowed)  // in the chunks' order
+            for (const Addend& a : list) sums[a.vertex].add(a.ofTriangle, a.hasOwnNormals);
         return sums;
     }
 
@@ -197,8 +202,13 @@ private:
             wide.push_back({v, {}, {}, 0, noLabel});
         }
         if (wide.empty()) return wide;
-        const auto isWide = [&](const Triangle& t) { return std::min({place[t.x], place[t.y], place[t.z]}) != none; };
-        for (const TipTriangle& t : trianglesThat(isWide))
+        const auto listWide = [&](const Chunk& chunk, std::vector<uint32_t>& numbers) {
+            for (uint32_t t = 0; t < chunk.triangles.size(); ++t) {
+                const Triangle c = chunk.inMesh(chunk.triangles[t]);
+                if (std::min({place[c.x], place[c.y], place[c.z]}) != none) numbers.push_back(t);
+            }
+        };
+        for (const TipTriangle& t : trianglesOf(listWide))
             for (int k = 0; k < 3; ++k) {
                 if (place[t.corners[k]] == none) continue;
                 WideVertex& at = wide[place[t.corners[k]]];

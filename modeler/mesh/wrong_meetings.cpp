@@ -31,17 +31,17 @@ std::vector<std::array<uint32_t, 2>> findWrongMeetings(std::span<const Vec3f> po
     const size_t steps = (triangles.size() + trianglesPerStep - 1) / trianglesPerStep;
     parallelFor(steps, threads, progress, [&](size_t step, int) {
         std::vector<std::array<uint32_t, 2>> found;
-        std::vector<uint32_t> beside;
-        const size_t end = std::min(triangles.size(), (step + 1) * trianglesPerStep);
-        for (size_t t = step * trianglesPerStep; t < end; ++t) {
-            finder.find(boxOf(positions, triangles[t]), beside);
+        const size_t begin = step * trianglesPerStep, end = std::min(triangles.size(), begin + trianglesPerStep);
+        const auto compare = [&](size_t t, std::span<const uint32_t> beside) {
             for (const uint32_t b : beside) {
                 const uint32_t other = changed[b];
                 if (isChanged[t] && other <= t) continue;  // compared from the other one's side, or the same
                 if (meetWrongly(positions, triangles[t], triangles[other]))
                     found.push_back({static_cast<uint32_t>(t), other});
             }
-        }
+        };
+        finder.visitMeeting(
+            positions, begin, end, [&](size_t t) { return triangles[t]; }, compare);
         if (found.empty()) return;
         const std::lock_guard lock(mutex);
         pairs.insert(pairs.end(), found.begin(), found.end());
