@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace sgm::mesh {
 namespace {
@@ -45,7 +46,25 @@ Vec3f inCell(const Grid& grid, Vec3i cell, Vec3f p) {
     return max(low + margin, min(high - margin, p));
 }
 
-void CellPieces::clear() { nodes_.clear(), polygons_.clear(), loops_.clear(), corners_.clear(), cellEnds_.clear(); }
+void CellPieces::clear() {
+    nodes_.clear(), polygons_.clear(), loops_.clear(), cellEnds_.clear();
+    corners_.clear();
+}
+
+void CellPieces::Corners::clear() {
+    spare.insert(spare.end(), std::move_iterator(list.begin()), std::move_iterator(list.end()));
+    list.clear();
+}
+
+CellPieces::Corner& CellPieces::Corners::add() {
+    Corner& corner = list.emplace_back();
+    if (spare.empty()) return corner;
+    corner.planes.swap(spare.back().planes), corner.planes.clear();
+    corner.labels.swap(spare.back().labels), corner.labels.clear();
+    corner.means.swap(spare.back().means), corner.means.clear();
+    spare.pop_back();
+    return corner;
+}
 
 void CellPieces::addPolygon(std::span<const LoopNode> nodes) {
     if (nodes.size() < 3) return;  // a piece that only touches the cell's face
@@ -101,8 +120,8 @@ void CellPieces::addSplit(Loop& loop, std::vector<LoopNode>& nodes) {
 }
 
 void CellPieces::addCorner(Loop& loop, const std::vector<LoopNode>& nodes) {
-    loop.corner = static_cast<int32_t>(corners_.size());
-    Corner& corner = corners_.emplace_back();
+    loop.corner = static_cast<int32_t>(corners_.list.size());
+    Corner& corner = corners_.add();
     corner.cell = loop.cell, corner.brick = loop.brick;
     corner.loop = static_cast<uint32_t>(loops_.size());
     const size_t n = nodes.size();
@@ -160,7 +179,7 @@ bool CellPieces::meets(const Corner& corner) const {
 /// beyond it. Returns how often the field was evaluated.
 uint64_t CellPieces::moveToSurface(const BlockTapes& tapes, eval::Workspace& workspace) {
     std::vector<Corner*> apart;
-    for (Corner& corner : corners_)
+    for (Corner& corner : corners_.list)
         if (corner.meeting == corner.at && !meets(corner)) apart.push_back(&corner);
     for (int step = 0; step < surfaceSteps && !apart.empty(); ++step) {
         probes_.clear();
@@ -181,7 +200,7 @@ uint64_t CellPieces::moveToSurface(const BlockTapes& tapes, eval::Workspace& wor
 /// grid, in the square with all three again on a finer one. Returns how often the field was evaluated.
 uint64_t CellPieces::searchFlatCorners(const BlockTapes& tapes, eval::Workspace& workspace) {
     std::vector<FlatCorner> flat;
-    for (Corner& corner : corners_)
+    for (Corner& corner : corners_.list)
         if (corner.labels.size() == 3 && corner.meeting == corner.at && lieInOnePlane(corner.planes))
             flat.push_back(squareAround(corner));
     uint64_t evaluations = 0;
@@ -256,14 +275,14 @@ bool CellPieces::narrow(FlatCorner& flat, size_t sample) const {
 /// the field was evaluated.
 uint64_t CellPieces::confirmMeetings(const BlockTapes& tapes, eval::Workspace& workspace) {
     probes_.clear();
-    for (Corner& corner : corners_) {
+    for (Corner& corner : corners_.list) {
         corner.leaves =
             corner.meeting != corner.at && length(corner.meeting - corner.at) <= leavingReach * grid_->cell_m;
         if (corner.leaves) probes_.add(tapes, corner.brick, corner.meeting);
     }
     probes_.evaluate(workspace);
     size_t i = 0;
-    for (Corner& corner : corners_) {
+    for (Corner& corner : corners_.list) {
         if (!corner.leaves) continue;
         float value;
         const PiecePoint seen = probes_.point(i++, value);
@@ -278,11 +297,12 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
                                   uint32_t firstVertex) {
     grid_ = &grid;
     firstVertex_ = firstVertex;
-    for (Corner& corner : corners_) intersect(corner);
+    for (Corner& corner : corners_.list) intersect(corner);
     uint64_t evaluations = 0;
-    for (int round = 0; round < cornerRounds && !corners_.empty(); ++round) {
+    std::vector<PiecePoint> seen;
+    for (int round = 0; round < cornerRounds && !corners_.list.empty(); ++round) {
         probes_.clear();
-        for (const Corner& corner : corners_) {
+        for (const Corner& corner : corners_.list) {
             if (corner.settled) continue;
             const bool isNear = length(corner.meeting - corner.at) <= leavingReach * grid.cell_m;
             const Vec3f from = round > 0 && isNear ? corner.meeting : corner.at;
@@ -291,9 +311,9 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
         probes_.evaluate(workspace);
         evaluations += probes_.size();
         size_t i = 0;
-        for (Corner& corner : corners_) {
+        for (Corner& corner : corners_.list) {
             if (corner.settled) continue;
-            std::vector<PiecePoint> seen;
+            seen.clear();
             corner.settled = true;
             for (size_t k = 0; k < corner.means.size(); ++k, ++i) {
                 float found;
@@ -311,7 +331,7 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
                         if (known.label == corner.labels[k]) seen.push_back(known);
                 }
             }
-            corner.planes = std::move(seen);
+            corner.planes.swap(seen);
             const Vec3f before = corner.meeting;
             intersect(corner);
             corner.settled = corner.settled && length(corner.meeting - before) <= settledShare * grid.cell_m;
@@ -328,7 +348,7 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
 void CellPieces::writeCorners() {
     for (const Loop& loop : loops_) {
         if (loop.corner < 0) continue;
-        const Corner& corner = corners_[static_cast<size_t>(loop.corner)];
+        const Corner& corner = corners_.list[static_cast<size_t>(loop.corner)];
         for (uint32_t p = loop.firstPolygon; p < loop.endPolygon; ++p)
             for (uint32_t i = polygons_[p].first; i < polygons_[p].end; ++i)
                 if (nodes_[i].vertex == cornerVertex) {

@@ -91,6 +91,14 @@ private:
         std::vector<Vec3f> means;  ///< by label: the middle of its nodes
     };
 
+    struct Corners {
+        std::vector<Corner> list, spare;
+
+        void clear();
+        /// One more, whose lists are empty and have the memory of one before.
+        Corner& add();
+    };
+
     /// A parallelogram in a plane in which a corner between borders is looked for.
     struct FlatCorner {
         Corner* corner;
@@ -131,7 +139,7 @@ private:
     std::vector<std::pair<uint32_t, Vec3d>> ring_;  ///< what is left of a polygon: nodes and their places
     std::vector<Polygon> polygons_;
     std::vector<Loop> loops_;
-    std::vector<Corner> corners_;
+    Corners corners_;
     PieceSamples probes_;  ///< near corners
     std::vector<uint32_t> cellEnds_;
     uint32_t firstVertex_ = 0;

@@ -160,11 +160,11 @@ void CellPieces::fan(uint32_t l, Vec3f place, PieceTriangles& out) {
     middle.isBreak = true;
     middle.at = inCell(*grid_, loop.cell, place);
     if (loop.corner < 0) {
-        loop.corner = static_cast<int32_t>(corners_.size());
-        corners_.emplace_back();
+        loop.corner = static_cast<int32_t>(corners_.list.size());
+        corners_.add();
     }
     middle.vertex = firstVertex_ + static_cast<uint32_t>(loop.corner);
-    Corner& corner = corners_[static_cast<size_t>(loop.corner)];
+    Corner& corner = corners_.list[static_cast<size_t>(loop.corner)];
     if (corner.planes.empty())
         corner.leaves = isOneCrease(nodes, corner.meeting);
     else
@@ -248,11 +248,12 @@ void CellPieces::triangulate(PieceTriangles& out, std::vector<uint32_t>& cellEnd
         next = end;
         cellEnds.push_back(static_cast<uint32_t>(out.triangles.size()));
     }
-    for (const Corner& corner : corners_) {
+    for (const Corner& corner : corners_.list) {
         Vec3f n{};
         for (const PiecePoint& plane : corner.planes) n += normalized(plane.gradient);
         if (corner.leaves)
-            out.confined.push_back({firstVertex_ + static_cast<uint32_t>(&corner - corners_.data()), corner.meeting});
+            out.confined.push_back(
+                {firstVertex_ + static_cast<uint32_t>(&corner - corners_.list.data()), corner.meeting});
         out.positions.push_back(corner.at);
         out.normals.push_back(n == Vec3f{} ? Vec3f{0, 1, 0} : normalized(n));
     }

@@ -32,38 +32,45 @@ constexpr double leastGain = 0.125;
 /// the tolerance may be turned.
 class Insides {
 public:
-    explicit Insides(const FlatMesh& flat) : positions_(flat.positions), component_(flat.positions.size()) {
-        Components joined(flat.positions.size());
-        for (const Triangle& t : flat.triangles) joined.join(joined.join(t.x, t.y), t.z);
-        for (uint32_t v = 0; v < component_.size(); ++v) component_[v] = joined.find(v);
-        before_.resize(component_.size());
-        for (const Triangle& t : flat.triangles) before_[component_[t.x]] += volumeUnder(t);
+    Insides(const FlatMesh& flat, const SurfaceRegions& regions)
+        : positions_(flat.positions), component_(regions.count()), anchor_(regions.count()), before_(regions.count()) {
+        Components joined(regions.count());
+        for (const BorderEdge& e : regions.borders) joined.join(e.left, e.right);
+        for (uint32_t r = 0; r < component_.size(); ++r) component_[r] = joined.find(r);
+        std::vector<bool> isKnown(regions.count());
+        for (size_t t = 0; t < flat.triangles.size(); ++t) {
+            const uint32_t component = component_[regions.ofTriangle[t]];
+            if (!isKnown[component])
+                isKnown[component] = true, anchor_[component] = flat.positions[flat.triangles[t].x];
+            before_[component] += volumeUnder(flat.triangles[t], component);
+        }
     }
 
     /// The triangles of components that enclose air where they enclosed solid, or the other way round.
     std::vector<uint32_t> turned(std::span<const SimpleTriangle> triangles) const {
-        PageVector<double> now;
-        now.assign(component_.size(), 0.0);
-        for (const SimpleTriangle& t : triangles) now[component_[t.corners.x]] += volumeUnder(t.corners);
+        std::vector<double> now(component_.size());
+        for (const SimpleTriangle& t : triangles)
+            now[component_[t.region]] += volumeUnder(t.corners, component_[t.region]);
         std::vector<uint32_t> found;
         for (uint32_t i = 0; i < triangles.size(); ++i) {
-            const uint32_t component = component_[triangles[i].corners.x];
+            const uint32_t component = component_[triangles[i].region];
             if (!(before_[component] * now[component] > 0)) found.push_back(i);
         }
         return found;
     }
 
 private:
-    /// Six times what lies between a triangle and a vertex of its component, by the divergence theorem.
-    double volumeUnder(const Triangle& t) const {
-        const Vec3d near = positions_[component_[t.x]].as<double>();
+    /// Six times what lies between a triangle and a point of its component, by the divergence theorem.
+    double volumeUnder(const Triangle& t, uint32_t component) const {
+        const Vec3d near = anchor_[component].as<double>();
         return dot(positions_[t.x].as<double>() - near,
                    cross(positions_[t.y].as<double>() - near, positions_[t.z].as<double>() - near));
     }
 
     std::span<const Vec3f> positions_;
-    std::vector<uint32_t> component_;  ///< by vertex: the lowest one of its component
-    std::vector<double> before_;       ///< by that vertex: six times the component's volume, of cavities below 0
+    std::vector<uint32_t> component_;  ///< by region: the lowest one of its component
+    std::vector<Vec3f> anchor_;        ///< by that region: a point of the component
+    std::vector<double> before_;       ///< by that region: six times the component's volume, of cavities below 0
 };
 
 class Simplifier {
@@ -84,7 +91,7 @@ public:
         chains_ = findChains(regions_);
         rejectTouching(flat_, chains_, separated, std::max(rounding_m_, chainShare * tolerance_m_), planes_, threads_);
         if (cancelled(progress_)) return cancelledError();
-        const Insides insides(flat_);
+        const Insides insides(flat_, regions_);
         auto best = simplifyOnce(insides);
         for (int attempt = 0; attempt < mostRetries && best.ok() && *best && treatLeftAsCurved(**best); ++attempt) {
             auto made = simplifyOnce(insides);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double leastDeterminant = 1e-4;  ///< of the mean of n nᵀ: below it, tangent planes meet in a line
 /// Of the depth of the highest vertex below the apex: where the surface is cut off, as far as needed.
-constexpr double cuts[] = {1.5, 2, 3, 4, farthestCut};
+constexpr double cuts[] = {nearestCut, 2, 3, 4, farthestCut};
 constexpr int rounds = 6;  ///< to find the apex
 // In cells:
 constexpr double apexRounding = 1e-3;  ///< what rounding leaves of the apex from planes around it
@@ -63,6 +63,12 @@ bool crosses(const TipSurface& surface, const TipFan& fan, std::span<const uint3
 /// one side of it.
 enum class Axis { FromMiddle, MeanNormal };
 
+/// Those that are tried: only a confined vertex may lie far to one side.
+std::span<const Axis> axesAt(const TipSurface& surface, uint32_t vertex) {
+    static constexpr Axis both[] = {Axis::FromMiddle, Axis::MeanNormal};
+    return std::span(both).first(surface.isConfined[vertex] ? 2 : 1);
+}
+
 class FanBuilder {
 public:
     FanBuilder(const TipSurface& surface, uint32_t vertex, Vec3d apex, Axis axis)
@@ -71,10 +77,7 @@ public:
     /// What is cut off at so many times the depth of the highest vertex; see `fanAt`. Nothing where the field on the
     /// fan isn't near 0, and unless `takesConfined`, where the border goes through a confined vertex.
     std::optional<TipFan> fan(double cut, bool takesConfined) {
-        top_ = vertex_, apex_ = guess_, lacksConfined_ = reachesTop_ = false;
-        cutOff_.clear(surface_.positions.size()), cutOff_.insert(top_);
-        triangles_.assign(around(top_).begin(), around(top_).end());
-        axis_ = axisOf();
+        begin();
         double within_m = apexSlack * surface_.cell_m;
         for (int round = 0; round < rounds; ++round) {
             if (isTooNear() || !gather(cut * depthOf(top_))) {
@@ -95,6 +98,12 @@ public:
         return made;
     }
 
+    /// Whether what is cut off first of all leaves room below the first guess of the apex.
+    bool leavesRoom() {
+        begin();
+        return !isTooNear() && gather(nearestCut * depthOf(top_));
+    }
+
     /// Whether the last fan wasn't made for a confined vertex alone: else taking those changes nothing.
     bool lacksConfined() const { return lacksConfined_; }
 
@@ -103,6 +112,13 @@ public:
     bool reachesTop() const { return reachesTop_; }
 
 private:
+    void begin() {
+        top_ = vertex_, apex_ = guess_, lacksConfined_ = reachesTop_ = false;
+        cutOff_.clear(surface_.positions.size()), cutOff_.insert(top_);
+        triangles_.assign(around(top_).begin(), around(top_).end());
+        axis_ = axisOf();
+    }
+
     Vec3d at(uint32_t vertex) const { return surface_.positions[vertex].as<double>(); }
     double depthOf(uint32_t vertex) const { return dot(apex_ - at(vertex), axis_); }
 
@@ -298,11 +314,15 @@ std::vector<float> valuesAt(const TipSurface& surface, std::span<const Vec3f> po
     return values;
 }
 
+bool mayBeTip(const TipSurface& surface, uint32_t vertex, Vec3d apex) {
+    const std::span<const Axis> axes = axesAt(surface, vertex);
+    return std::any_of(axes.begin(), axes.end(),
+                       [&](Axis axis) { return FanBuilder(surface, vertex, apex, axis).leavesRoom(); });
+}
+
 std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d apex) {
     std::optional<TipFan> first;
-    for (const Axis axis : {Axis::FromMiddle, Axis::MeanNormal}) {
-        if (axis == Axis::MeanNormal && !surface.isConfined[vertex])
-            break;  // only a confined vertex may lie far to one side
+    for (const Axis axis : axesAt(surface, vertex)) {
         FanBuilder builder(surface, vertex, apex, axis);
         std::array<bool, std::size(cuts)> isOpen;
         isOpen.fill(true);

@@ -98,6 +98,10 @@ struct TipFan {
 /// The field at points.
 std::vector<float> valuesAt(const TipSurface& surface, std::span<const Vec3f> points);
 
+/// False where fanAt finds nothing since the surface around `vertex` comes too near to `apex`. Of the surface's
+/// triangles those within `nearestCut` of the way suffice.
+bool mayBeTip(const TipSurface& surface, uint32_t vertex, Vec3d apex);
+
 /// Cuts off the surface around `vertex` below `apex`, as near to the apex as triangles lie on the surface, else as they
 /// come near it, and fans the border to the apex, which the planes of what was cut off tell exactly. Nothing where they
 /// don't agree or the field says otherwise, and where what is cut off isn't one disk. O(n) in the triangles that are
@@ -107,8 +111,8 @@ std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d ap
 /// Drops fans that cross triangles which stay, or may cross a fan before. O(n log n) in the triangles.
 void dropCrossing(const TipSurface& surface, std::vector<TipFan>& fans, const Progress* progress);
 
-/// Of the depth of the highest vertex below the apex: how far below it the surface is cut off at most.
-inline constexpr double farthestCut = 6;
+/// Of the depth of the highest vertex below the apex: how far below it the surface is cut off, at first and at most.
+inline constexpr double nearestCut = 1.5, farthestCut = 6;
 /// Of a cell: how far a first guess of an apex may be from the surface and from the planes around it.
 inline constexpr double apexSlack = 0.3;
 }  // namespace sgm::mesh

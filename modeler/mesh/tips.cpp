@@ -74,8 +74,10 @@ public:
     /// What completes tips. After cancelling some of it, or none.
     std::vector<TipFan> find() {
         if (!cancelled(progress_)) findCandidates();
+        listTriangles(nearestCut);
+        keep(candidates_, [&](size_t i) { return mayBeTip(surface_, candidates_[i].vertex, candidates_[i].apex); });
         if (candidates_.empty()) return {};
-        listTriangles();
+        listTriangles(farthestCut);
         std::vector<TipFan> fans;
         std::vector<bool> isTaken(positions_.size());
         for (const Candidate& at : candidates_) {
@@ -342,11 +344,11 @@ private:
         return isReached;
     }
 
-    /// The triangles near candidates, and those around each vertex.
-    void listTriangles() {
+    /// The triangles near candidates, as far as what is cut off so deep may reach, and those around each vertex.
+    void listTriangles(double cut) {
         std::vector<Box3f> boxes;
         for (const Candidate& c : candidates_)
-            boxes.push_back(cubeAround(c.apex.as<float>(), farthestCut * wayOf(c) + 2 * surface_.cell_m));
+            boxes.push_back(cubeAround(c.apex.as<float>(), cut * wayOf(c) + 2 * surface_.cell_m));
         triangles_ = trianglesIn(BoxFinder(boxes));
         firstAround_.assign(positions_.size() + 1, 0);
         for (const TipTriangle& t : triangles_)
