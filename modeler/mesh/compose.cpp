@@ -5,12 +5,6 @@
 namespace sgm::mesh {
 namespace {
 
-Vec3f normalOfVertex(const Mesh& input, const FlatMesh& flat, uint32_t v) {
-    const auto after = [](uint32_t vertex, const FlatMesh::Part& p) { return vertex < p.firstVertex; };
-    const auto part = std::prev(std::upper_bound(flat.parts.begin(), flat.parts.end(), v, after));
-    return input.chunks[static_cast<size_t>(part - flat.parts.begin())].normals[v - part->firstVertex];
-}
-
 /// The normal of the input's corner at a vertex on a curved region.
 struct InputCorner {
     uint32_t vertex, region;

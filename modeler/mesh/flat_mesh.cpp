@@ -1,5 +1,8 @@
 #include "modeler/mesh/flat_mesh.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include <cstring>
 
 #include "modeler/core/parallel.h"
@@ -31,6 +34,12 @@ FlatMesh flatten(const Mesh& mesh, int threads) {
         }
     });
     return flat;
+}
+
+Vec3f normalOfVertex(const Mesh& mesh, const FlatMesh& flat, uint32_t vertex) {
+    const auto isBefore = [](uint32_t v, const FlatMesh::Part& p) { return v < p.firstVertex; };
+    const auto part = std::prev(std::upper_bound(flat.parts.begin(), flat.parts.end(), vertex, isBefore));
+    return mesh.chunks[static_cast<size_t>(part - flat.parts.begin())].normals[vertex - part->firstVertex];
 }
 
 }  // namespace sgm::mesh

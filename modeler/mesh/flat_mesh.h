@@ -25,4 +25,8 @@ struct FlatMesh {
 /// Copies `mesh` into plain arrays on `threads` threads (0: all); O(n).
 FlatMesh flatten(const Mesh& mesh, int threads);
 
+/// The normal that `mesh`, whose flat form is `flat`, has for a vertex; corners may have others. O(log n) in the
+/// chunks.
+Vec3f normalOfVertex(const Mesh& mesh, const FlatMesh& flat, uint32_t vertex);
+
 }  // namespace sgm::mesh

@@ -21,7 +21,7 @@ void TouchedTriangles::find(const PageVector<uint32_t>& moveOf) {
             for (; normal != normals.end() && normal->corner / 3 == t; ++normal)
                 touched.outward += normal->normal.as<double>(), touched.creases |= 1 << normal->corner % 3;
             if (moveOf[corners.x] == none && moveOf[corners.y] == none && moveOf[corners.z] == none) continue;
-            touched.outward = normalized(touched.outward);
+            touched.outward = outwardOf(touched, touched.outward);
             touched.before = facing(touched);
             touched_.push_back(touched);
         }
@@ -46,6 +46,16 @@ std::vector<uint32_t> TouchedTriangles::folded() const {
 
 bool TouchedTriangles::isFlat(const Touched& touched) const {
     return !(facing(touched) > foldedShare * longestSquare(touched.triangle));
+}
+
+/// The mean of the normals at corners inside its piece, which the surface as it is doesn't mislead; where all lie on
+/// creases, of those.
+Vec3d TouchedTriangles::outwardOf(const Touched& touched, Vec3d ofCreases) const {
+    Vec3d inside;
+    for (int i = 0; i < 3; ++i)
+        if (!(touched.creases >> i & 1))
+            inside += normalOfVertex(mesh_, flat_, flat_.triangles[touched.triangle][i]).as<double>();
+    return normalized(touched.creases == 7 ? ofCreases : inside);
 }
 
 double TouchedTriangles::facing(const Touched& touched) const {

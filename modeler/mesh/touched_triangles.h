@@ -16,7 +16,7 @@ public:
     struct Touched {
         uint32_t triangle;
         int creases;              ///< a bit for each corner that lies on a crease
-        Vec3d outward;            ///< the sum of its corners' normals, of those at creases, as a unit vector
+        Vec3d outward;            ///< unit; see outwardOf
         double before;            ///< twice its area, as far as it faced outward
         bool isNew = false;       ///< an edge of it was flipped since triangles were compared
         bool hasFlipped = false;  ///< an edge of it was flipped once
@@ -37,6 +37,7 @@ public:
     auto end() { return touched_.end(); }
 
 private:
+    Vec3d outwardOf(const Touched& touched, Vec3d ofCreases) const;
     double facing(const Touched& touched) const;
     double longestSquare(uint32_t triangle) const;
 

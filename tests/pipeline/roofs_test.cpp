@@ -51,6 +51,23 @@ TEST(Eaves, AreThereInCellsOfAnySize) {
         }
 }
 
+/// The tip of a flat wedge is thinner than a cell for several of them: its edges are whole all the same, where they
+/// were teeth of a cell and 854 and 874 triangles. A house of six faces and eight of the roof has 28.
+TEST(Eaves, OfFlatWedgesEndInAStraightEdge) {
+    const Model model = houseWith("shedRoof(18deg, overhang: .5m)", turned);
+    Context context{nullptr, 2};
+    for (const int resolution : {128, 256}) {
+        MeshedModel made = meshed(model, resolution);
+        const auto mesh =
+            edited(std::move(made.mesh), {}, {model.tape, mesh::Surface::Crisp, made.grid.cell_m}, context);
+        ASSERT_TRUE(mesh.ok());
+        EXPECT_LE(mesh->triangleCount(), 64u) << resolution;
+        EXPECT_NEAR(mesh::measure(*mesh).volume_m3, 828.79, .02) << resolution;
+        const auto word = mesh::validate(*mesh);
+        EXPECT_TRUE(word.ok() && word->closed && !word->selfIntersects) << resolution;
+    }
+}
+
 TEST(Eaves, ThatAMeshHasAreNotTorn) {
     const Model model = houseWith("hipRoof(40deg, overhang: .5m, fascia: .15m)");
     EXPECT_EQ(tornEaves(model, meshed(model, 16, 0)), 1u);
