@@ -1,58 +1,20 @@
 // What roofs ask of a formula: how deep it is, how far slopes reach, where gables stand.
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 #include <queue>
 
 #include "modeler/plan/formula.h"
+#include "modeler/plan/grouped_formula.h"
 
 namespace sgm::plan {
 
-using Kind = FormulaNode::Kind;
-
 namespace {
 
-/// Two rectangles and their centres, for the formula's lower bounds over the former and its values at the latter: four
-/// numbers a node side by side, which compilers make vectors of.
-struct BoxPair {
-    static constexpr size_t lanes = 4;
-    using Lanes = std::array<double, lanes>;
-    /// By whether a leaf falls along the axis: where it is lowest, and the centre.
-    std::array<Lanes, 2> x, z;
-
-    BoxPair(const Box2& a, const Box2& b) {
-        const Vec2 atA = a.centre(), atB = b.centre();
-        x = {Lanes{a.lo.x, b.lo.x, atA.x, atB.x}, Lanes{a.hi.x, b.hi.x, atA.x, atB.x}};
-        z = {Lanes{a.lo.z, b.lo.z, atA.z, atB.z}, Lanes{a.hi.z, b.hi.z, atA.z, atB.z}};
-    }
-};
-
-/// The lower bounds over both boxes, then the values at both centres.
-BoxPair::Lanes evaluate(const Formula& formula, std::span<const Linear> leaves, const BoxPair& boxes,
-                        std::vector<BoxPair::Lanes>& values) {
-    values.resize(formula.nodes.size());
-    for (size_t i = 0; i < formula.nodes.size(); ++i) {
-        const FormulaNode& node = formula.nodes[i];
-        BoxPair::Lanes& value = values[i];
-        if (node.kind == Kind::Edge) {
-            const Linear& l = leaves[node.first];
-            const BoxPair::Lanes &x = boxes.x[l.a < 0], &z = boxes.z[l.b < 0];
-            for (size_t k = 0; k < BoxPair::lanes; ++k) value[k] = l.at({x[k], z[k]});
-            continue;
-        }
-        const BoxPair::Lanes &a = values[node.first], &b = values[node.second];
-        if (node.kind == Kind::Max)
-            for (size_t k = 0; k < BoxPair::lanes; ++k) value[k] = std::max(a[k], b[k]);
-        else
-            for (size_t k = 0; k < BoxPair::lanes; ++k) value[k] = std::min(a[k], b[k]);
-    }
-    return values.back();
-}
-
-/// A rectangle and the least the formula can be there.
+/// The least the formula can be in a rectangle, and the rectangle's number: what moves in the queue is small.
 struct Candidate {
     double bound;
-    Box2 box;
+    uint32_t box;
     friend bool operator<(const Candidate& a, const Candidate& b) { return a.bound > b.bound; }
 };
 
@@ -61,17 +23,18 @@ struct Search {
     const Formula& formula;
     std::span<const Linear> leaves, outline;
     double tolerance;
-    double reached = Box2::far;  ///< the least value found
-    Vec2 where{};                ///< its place
-    std::vector<BoxPair::Lanes> values{};
+    GroupedFormula inside{formula, outline};
+    std::optional<GroupedFormula> other{};  ///< of the leaves, where they aren't the outline's
+    double reached = Box2::far;             ///< the least value found
+    Vec2 where{};                           ///< its place
+    std::vector<Box2> boxes{};
     std::priority_queue<Candidate> queue{};
 
     void add(const Box2& first, const Box2& second) {
-        const BoxPair boxes(first, second);
-        const BoxPair::Lanes outside = evaluate(formula, outline, boxes, values);
+        const BoxPair pair(first, second);
+        const BoxPair::Lanes outside = inside.evaluate(pair);
         if (outside[0] > 0 && outside[1] > 0) return;
-        const bool same = leaves.data() == outline.data();
-        const BoxPair::Lanes over = same ? outside : evaluate(formula, leaves, boxes, values);
+        const BoxPair::Lanes over = other ? other->evaluate(pair) : outside;
         add(first, outside[0], over[0], outside[2], over[2]);
         add(second, outside[1], over[1], outside[3], over[3]);
     }
@@ -79,17 +42,20 @@ struct Search {
     void add(const Box2& box, double outside, double bound, double outsideAtCentre, double atCentre) {
         if (outside > 0) return;
         if (outsideAtCentre <= 0 && atCentre < reached) reached = atCentre, where = box.centre();
-        if (bound < reached - tolerance) queue.push({bound, box});
+        if (!(bound < reached - tolerance)) return;
+        queue.push({bound, static_cast<uint32_t>(boxes.size())});
+        boxes.push_back(box);
     }
 
     /// A lower bound of what the boxes hold that were left.
     double run(const Box2& box) {
         constexpr size_t mostBoxes = 4096;
-        const BoxPair::Lanes outside = evaluate(formula, outline, {box, box}, values);
-        const BoxPair::Lanes over = evaluate(formula, leaves, {box, box}, values);
+        if (leaves.data() != outline.data()) other.emplace(formula, leaves);
+        const BoxPair pair(box, box);
+        const BoxPair::Lanes outside = inside.evaluate(pair), over = other ? other->evaluate(pair) : outside;
         add(box, outside[0], over[0], outside[2], over[2]);
         for (size_t n = 0; n < mostBoxes && !queue.empty() && queue.top().bound < reached - tolerance; ++n) {
-            const Box2 b = queue.top().box;
+            const Box2 b = boxes[queue.top().box];
             queue.pop();
             Box2 low = b, high = b;
             if (b.size().x > b.size().z)
