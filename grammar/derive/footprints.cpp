@@ -24,12 +24,22 @@ uint64_t hashOf(const plan::Footprint& footprint) {
 }  // namespace
 
 Result<uint32_t> Footprints::put(const plan::Footprint& footprint, Vec3d half) {
+    return put(footprint, half, plan::monotoneFormula);
+}
+
+uint32_t Footprints::putSound(const plan::Footprint& footprint, Vec3d half) {
+    const auto formulaOf = [](const plan::Footprint& sound) { return Result(plan::formulaOfSound(sound)); };
+    return *put(footprint, half, formulaOf);
+}
+
+Result<uint32_t> Footprints::put(const plan::Footprint& footprint, Vec3d half,
+                                 Result<plan::Formula> (*formulaOf)(const plan::Footprint&)) {
     plan::Footprint shares = plan::placed(footprint, {1 / half.x, 1 / half.z}, {0, 0});
     const uint64_t hash = hashOf(shares);
     const auto [begin, end] = byHash_.equal_range(hash);
     for (auto at = begin; at != end; ++at)
         if (shapes_[at->second]->footprint == shares) return at->second;
-    auto formula = plan::monotoneFormula(footprint);
+    auto formula = formulaOf(footprint);
     if (!formula.ok()) return formula.error();
     shapes_.push_back(std::make_shared<const PlanShape>(PlanShape{std::move(shares), std::move(*formula)}));
     byHash_.emplace(hash, static_cast<uint32_t>(shapes_.size() - 1));

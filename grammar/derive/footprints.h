@@ -30,6 +30,8 @@ public:
     /// The index of a footprint given in metres about the centre of a scope of that half-size: an old one where one is
     /// alike. Error::Input with the fault's sentence where its edges cross.
     Result<uint32_t> put(const plan::Footprint& footprint, Vec3d half);
+    /// The same of a footprint that plan::firstFault found sound.
+    uint32_t putSound(const plan::Footprint& footprint, Vec3d half);
     /// Appends all of another table; the index of its first one here.
     size_t append(const Footprints& other);
     const PlanShape& operator[](uint32_t index) const { return *shapes_[index]; }
@@ -43,6 +45,8 @@ public:
     }
 
 private:
+    Result<uint32_t> put(const plan::Footprint& footprint, Vec3d half,
+                         Result<plan::Formula> (*formulaOf)(const plan::Footprint&));
     /// A footprint's number and the bits of a half-size along x and z.
     using Size = std::array<uint64_t, 3>;
     static Size sizeOf(uint32_t index, Vec3d half) {

@@ -47,7 +47,8 @@ PlanField::PlanField(std::shared_ptr<const PlanNumbers> numbers, Graph& graph)
     : numbers_(std::move(numbers)),
       p_{graph.literal(0), graph.literal(0), graph.literal(0)},
       distances_(edges().size(), graph.literal(0)),
-      outside_(graph.literal(0)) {}
+      outside_(graph.literal(0)),
+      hasBoundsOnly_(true) {}
 
 NodeRef PlanField::distance(uint32_t edge) const {
     std::optional<NodeRef>& known = distances_[edge];
@@ -151,6 +152,7 @@ Field PlanField::boxed(NodeRef value, uint64_t path, double bottom, double top, 
     const Vec3d centre{middle.x, (bottom + top) / 2, middle.z};
     const Vec3d half{size.x / 2 + apart, std::max(top - bottom, 0.0) / 2 + apart, size.z / 2 + apart};
     const Vec3f c = centre.as<float>(), h = half.as<float>();
+    if (hasBoundsOnly_) return {value, {c - h, c + h}, 1, solids::growth(1)};
     const auto number = [&](NumberName of, uint64_t axis, double v) { return pathSlot(graph(), path, of, axis, v); };
     const Point middle3{number("box centre", 0, centre.x), number("box centre", 1, centre.y),
                         number("box centre", 2, centre.z)};

@@ -74,6 +74,7 @@ private:
     mutable std::vector<std::optional<NodeRef>> distances_,
         alongs_;  ///< made when asked for; along each leader's normal
     NodeRef outside_;
+    bool hasBoundsOnly_ = false;
 };
 
 }  // namespace sgm::field

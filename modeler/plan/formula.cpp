@@ -171,6 +171,10 @@ Result<Formula> monotoneFormula(const Footprint& footprint) {
     loose.leastEdge_m = 0, loose.leastArea_m2 = 0, loose.farthest_m = 1e6, loose.mostPoints = 10'000'000;
     if (const auto fault = firstFault(footprint, loose))
         return Error{Error::Kind::Input, sentenceOf(*fault, footprint)};
+    return formulaOfSound(footprint);
+}
+
+Formula formulaOfSound(const Footprint& footprint) {
     Formula formula;
     formula.nodes.reserve(2 * footprint.edgeCount());
     uint32_t firstEdge = 0;

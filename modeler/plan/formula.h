@@ -33,6 +33,8 @@ struct Formula {
 /// are built, n² for combs and spirals (.3 s for 10⁴ edges).
 /// Error::Input with the fault's sentence where edges cross or a ring is none.
 Result<Formula> monotoneFormula(const Footprint& footprint);
+/// The same of a footprint that firstFault found sound, which isn't looked at again.
+Formula formulaOfSound(const Footprint& footprint);
 
 /// a·x + b·z + c.
 struct Linear {

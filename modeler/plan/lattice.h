@@ -2,7 +2,6 @@
 // Enters: points in metres within 2²⁰ m of 0. Leaves: decisions without rounding. Assumes finite coordinates.
 #pragma once
 
-#include <cmath>
 #include <compare>
 #include <cstdint>
 
@@ -23,9 +22,14 @@ struct LatticePoint {
     friend LatticePoint operator-(LatticePoint a) { return {-a.x, -a.z}; }
 };
 
+/// As std::llround, which is a call.
+inline int64_t nearestUnit(double units) {
+    const auto whole = static_cast<int64_t>(units);
+    const double rest = units - static_cast<double>(whole);
+    return whole + (rest >= .5) - (rest <= -.5);
+}
 inline LatticePoint latticePoint(Vec2 p) {
-    return {static_cast<int64_t>(std::llround(p.x * unitsPerMetre)),
-            static_cast<int64_t>(std::llround(p.z * unitsPerMetre))};
+    return {nearestUnit(p.x * unitsPerMetre), nearestUnit(p.z * unitsPerMetre)};
 }
 inline Vec2 metres(LatticePoint p) {
     return {static_cast<double>(p.x) / unitsPerMetre, static_cast<double>(p.z) / unitsPerMetre};

@@ -197,6 +197,13 @@ TEST(Footprints, WhatCannotBeDrawnIsSaidWhereItStands) {
               std::string::npos);
     EXPECT_NE(errorOf("start A -> footprint ell(4, 4, 9, 1) wall\n").find("wing"), std::string::npos);
     EXPECT_NEAR(areaOf("start A -> footprint rect(4, 4) court 3m wall\n"), 16, 1e-9) << "wings leave no court";
+    // Faults tell places as they are written, not from the middle of the plan.
+    EXPECT_NE(
+        errorOf("start A -> footprint outline((7, 5), (11, 9), (11, 5), (7, 8)) wall\n").find("near (8.71429, 6.71"),
+        std::string::npos);
+    EXPECT_NE(errorOf("start A -> footprint outline((150000, 0), (150004, 0), (150004, 5), (150000, 5)) wall\n")
+                  .find("begins at (150000, 0), too far from the origin"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -93,6 +93,12 @@ TEST(Validate, NamesTheFirstFaultAndItsEdge) {
     EXPECT_NEAR(length(fault.at - Vec2{1, 1}), 0, 1e-9);
     EXPECT_THAT(sentenceOf(fault, bow), HasSubstr("edge 1 of the outline meets edge 3 of the outline near (1, 1)"));
     EXPECT_EQ(kindOf(of({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}})), FaultKind::Crossing) << "a corner on an edge";
+    const Footprint star = of({{0, 2}, {-1.2, -1.6}, {1.9, .6}, {-1.9, .6}, {1.2, -1.6}});
+    EXPECT_EQ(kindOf(star), FaultKind::Crossing) << "it turns left at every corner, twice around";
+    const Footprint around = of({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {-1, 1}, {3, 1}, {3, 3}, {1, 3}});
+    EXPECT_EQ(kindOf(around), FaultKind::Crossing);
+    EXPECT_FALSE(firstFault(of({{0, 0}, {2, -1}, {4, 0}, {5, 2}, {4, 4}, {2, 5}, {0, 4}, {-1, 2}})));
+    EXPECT_FALSE(firstFault(of({{0, 0}, {2, 0}, {4, 0}, {4, 4}, {0, 4}}))) << "a corner of 180 degrees";
     Footprint spiked = square(1);
     spiked.polygons[0].outer.edges.pop_back();
     EXPECT_EQ(kindOf(spiked), FaultKind::EdgeList);
@@ -133,6 +139,9 @@ TEST(Validate, CleaningDropsWhatSaysNothing) {
     f.polygons[0].outer = reversed(f.polygons[0].outer);
     EXPECT_FALSE(firstFault(cleaned(f)));
     EXPECT_TRUE(cleaned(footprintOf({ringOf({{0, 0}, {1, 0}, {2, 0}}), {}})).empty());
+    const auto bent = [](double by) { return footprintOf({ringOf({{0, 0}, {3, -by}, {4, 0}, {4, 3}, {0, 3}}), {}}); };
+    EXPECT_EQ(cleaned(bent(.99e-3)).polygons[0].outer.size(), 4u) << "within a millimetre of the line";
+    EXPECT_EQ(cleaned(bent(1.01e-3)).polygons[0].outer.size(), 5u);
 }
 
 }  // namespace
