@@ -13,8 +13,6 @@
 
 namespace sgm::plan {
 
-using Json = nlohmann::json;
-
 namespace {
 
 constexpr int deepestList = 64;
@@ -44,109 +42,101 @@ std::optional<Error> tooDeep(std::string_view bytes) {
     return {};
 }
 
-/// Goes through the brackets, commas and texts of a file, and notes where its features begin and end.
-class Splitter {
-public:
-    explicit Splitter(std::string_view bytes) : bytes_(bytes) {}
-
-    std::optional<SplitFile> run() {
-        for (; at_ < bytes_.size(); ++at_) {
-            const char c = bytes_[at_];
-            if (c == '"')
-                skipText();
-            else if (c == '[' || c == '{')
-                open(c);
-            else if (c == ']' || c == '}')
-                close();
-            else if (c == ',' && depth_ == 2 && isInFeatures_)
-                endFeature();
-        }
-        if (lists_ != 1 || isInFeatures_ || depth_ != 0 || isTooDeep_) return {};
-        const std::string_view before = bytes_.substr(0, begin_), after = bytes_.substr(end_);
-        return SplitFile{fmt::format("{}0{}", before, after), std::move(features_)};
-    }
-
-private:
-    void skipText() {
-        const size_t from = ++at_;
-        while (at_ < bytes_.size() && bytes_[at_] != '"') at_ += bytes_[at_] == '\\' ? 2 : 1;
-        if (depth_ == 1 && at_ < bytes_.size()) latest_ = bytes_.substr(from, at_ - from), afterLatest_ = at_ + 1;
-    }
-    void open(char c) {
-        if (++depth_ > deepestList) isTooDeep_ = true;
-        if (depth_ != 2 || c != '[' || latest_ != "features") return;
-        const std::string_view between = bytes_.substr(afterLatest_, at_ - afterLatest_);
-        if (between.find(':') == between.npos || between.find_first_not_of(" \t\r\n:") != between.npos) return;
-        isInFeatures_ = true;
-        ++lists_;
-        begin_ = feature_ = at_ + 1;
-    }
-    void close() {
-        if (--depth_ != 1 || !isInFeatures_) return;
-        endFeature();
-        isInFeatures_ = false;
-        end_ = at_;
-    }
-    void endFeature() {
-        features_.push_back(bytes_.substr(feature_, at_ - feature_));
-        feature_ = at_ + 1;
-    }
-
-    const std::string_view bytes_;
-    size_t at_ = 0;
-    int depth_ = 0, lists_ = 0;
-    bool isInFeatures_ = false, isTooDeep_ = false;
-    std::string_view latest_;  ///< text of the outermost object
-    size_t afterLatest_ = 0, begin_ = 0, end_ = 0, feature_ = 0;
-    std::vector<std::string_view> features_;
-};
+bool parse(std::string_view bytes, JsonFile& file) {
+    file.parser = std::make_unique<simdjson::dom::parser>();
+    // Its depth counts one more than the lists, and not a list of nothing.
+    return file.parser->allocate(bytes.size(), deepestList + 1) == simdjson::SUCCESS &&
+           file.parser->parse(bytes.data(), bytes.size()).get(file.root) == simdjson::SUCCESS;
+}
 
 }  // namespace
 
-std::optional<SplitFile> splitFeatures(std::string_view bytes) { return Splitter(bytes).run(); }
-
-std::string textOf(const Json& value) { return shortened(printable(value.get_ref<const std::string&>()), longestText); }
-
-std::string_view member(const Json& object, const char* name) {
-    if (!object.is_object()) return {};
-    const auto at = object.find(name);
-    return at != object.end() && at->is_string() ? std::string_view(at->get_ref<const std::string&>())
-                                                 : std::string_view{};
-}
-
-Result<Json> parseGeoJson(std::string_view bytes) {
+Result<JsonFile> parseGeoJson(std::string_view bytes) {
+    JsonFile file;
+    if (parse(bytes, file)) return file;
+    // simdjson tells no place, and reads neither a mark of byte order nor whole numbers of more than 64 bits.
     if (const auto e = tooDeep(bytes)) return *e;
     try {
-        return Json::parse(bytes);
-    } catch (const Json::parse_error& e) {
+        if (parse(nlohmann::json::parse(bytes).dump(), file)) return file;
+        return Error{Error::Kind::Input, "this is no JSON"};
+    } catch (const nlohmann::json::parse_error& e) {
         const auto line =
             1 + std::count(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(std::min(e.byte, bytes.size())), '\n');
         return damaged("line", static_cast<uint64_t>(line), "this is no JSON");
-    } catch (const Json::out_of_range&) {
+    } catch (const nlohmann::json::out_of_range&) {
         return Error{Error::Kind::Input, "a number is too large"};
     }
 }
 
-void readProperties(const Json& object, std::vector<Property>& into) {
-    for (const auto& [name, value] : object.items()) {
-        if (into.size() >= mostProperties) return;
-        Property property{shortened(printable(name), longestText), 0.0};
-        if (value.is_string())
-            property.value = textOf(value);
-        else if (value.is_boolean())
-            property.value = value.get<bool>() ? "true" : "false";
-        else if (value.is_number() && std::isfinite(value.get<double>()))
-            property.value = value.get<double>();
+std::optional<Json> find(Json object, std::string_view name) {
+    simdjson::dom::object members;
+    std::optional<Json> found;
+    if (object.get(members) != simdjson::SUCCESS) return found;
+    for (const auto [key, value] : members)
+        if (key == name) found = value;
+    return found;
+}
+
+std::optional<simdjson::dom::array> findList(Json object, std::string_view name) {
+    const auto found = find(object, name);
+    simdjson::dom::array list;
+    return found && found->get(list) == simdjson::SUCCESS ? std::optional(list) : std::nullopt;
+}
+
+std::string_view member(Json object, std::string_view name) {
+    const auto found = find(object, name);
+    std::string_view text;
+    return found && found->get(text) == simdjson::SUCCESS ? text : std::string_view{};
+}
+
+std::vector<Json> itemsOf(simdjson::dom::array list) {
+    std::vector<Json> items;
+    items.reserve(list.size());
+    for (const Json item : list) items.push_back(item);
+    return items;
+}
+
+std::optional<Vec2> positionOf(Json at) {
+    simdjson::dom::array list;
+    if (at.get(list) != simdjson::SUCCESS) return {};
+    double numbers[2];
+    size_t count = 0;
+    for (const Json one : list) {
+        if (one.get(numbers[count]) != simdjson::SUCCESS) return {};
+        if (++count == 2) return Vec2{numbers[0], numbers[1]};
+    }
+    return {};
+}
+
+std::string textOf(std::string_view text) { return shortened(printable(text), longestText); }
+
+void readProperties(simdjson::dom::object object, std::vector<Property>& into) {
+    std::vector<std::pair<std::string_view, Json>> members;
+    for (const auto [name, value] : object) members.emplace_back(name, value);
+    std::stable_sort(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (size_t i = 0; i < members.size() && into.size() < mostProperties; ++i) {
+        const auto& [name, value] = members[i];
+        if (i + 1 < members.size() && members[i + 1].first == name) continue;  // the last of that name counts
+        Property property{textOf(name), 0.0};
+        std::string_view text;
+        double number = 0;
+        bool isTrue = false;
+        if (value.get(text) == simdjson::SUCCESS)
+            property.value = textOf(text);
+        else if (value.get(isTrue) == simdjson::SUCCESS)
+            property.value = isTrue ? "true" : "false";
+        else if (value.get(number) == simdjson::SUCCESS && std::isfinite(number))
+            property.value = number;
         else
             continue;
         into.push_back(std::move(property));
     }
 }
 
-bool namesPlane(const Json& root) {
-    const auto crs = root.is_object() ? root.find("crs") : root.end();
-    if (crs == root.end() || !crs->is_object() || !crs->contains("properties")) return false;
-    const std::string_view name = member((*crs)["properties"], "name");
+bool namesPlane(Json root) {
+    const auto crs = find(root, "crs");
+    const auto properties = crs ? find(*crs, "properties") : std::nullopt;
+    const std::string_view name = properties ? member(*properties, "name") : "";
     return !name.empty() && name.find("CRS84") == name.npos && name.find("4326") == name.npos;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "modeler/core/parallel.h"
 #include "modeler/core/printable.h"
@@ -11,8 +10,6 @@
 
 namespace sgm::plan {
 namespace {
-
-using Json = nlohmann::json;
 
 /// What was read so far; points as the file has them.
 struct Reading {
@@ -23,16 +20,19 @@ struct Reading {
     uint64_t number = 0;  ///< of the feature
 };
 
-std::optional<Error> readRing(const Json& list, bool isCourt, Reading& reading, Ring& ring) {
-    if (!list.is_array()) return damaged("feature", reading.number, "a ring is no list of positions");
+std::optional<Error> readRing(Json written, bool isCourt, Reading& reading, Ring& ring) {
+    simdjson::dom::array list;
+    if (written.get(list) != simdjson::SUCCESS)
+        return damaged("feature", reading.number, "a ring is no list of positions");
     if (auto e = reading.budget.addPoints(list.size())) return e;
     std::vector<Vec2> points;
     points.reserve(list.size());
-    for (const Json& at : list) {
-        if (!at.is_array() || at.size() < 2 || !at[0].is_number() || !at[1].is_number())
+    for (const Json at : list) {
+        const auto position = positionOf(at);
+        if (!position)
             return damaged("feature", reading.number,
                            fmt::format("position {} of a ring is not a list of two numbers", points.size() + 1));
-        points.push_back({at[0].get<double>(), at[1].get<double>()});
+        points.push_back(*position);
         if (!std::isfinite(points.back().x) || !std::isfinite(points.back().z))
             return damaged("feature", reading.number,
                            fmt::format("position {} of a ring is not finite", points.size()));
@@ -43,10 +43,9 @@ std::optional<Error> readRing(const Json& list, bool isCourt, Reading& reading, 
     return {};
 }
 
-std::optional<Error> readPolygon(const Json& rings, Reading& reading, Footprint& into) {
-    if (!rings.is_array()) return damaged("feature", reading.number, "a polygon is no list of rings");
+std::optional<Error> readPolygon(simdjson::dom::array rings, Reading& reading, Footprint& into) {
     Polygon polygon;
-    for (const Json& list : rings) {
+    for (const Json list : rings) {
         Ring ring;
         const bool isCourt = polygon.outer.size() > 0;
         if (auto e = readRing(list, isCourt, reading, ring)) return e;
@@ -59,59 +58,75 @@ std::optional<Error> readPolygon(const Json& rings, Reading& reading, Footprint&
     return {};
 }
 
-std::optional<Error> readGeometry(const Json& geometry, Reading& reading, Footprint& into) {
+std::optional<Error> readGeometry(Json geometry, Reading& reading, Footprint& into) {
     if (!geometry.is_object()) return {};
     const std::string_view type = member(geometry, "type");
-    const auto coordinates = geometry.find("coordinates");
     if (type == "GeometryCollection") {
-        const auto list = geometry.find("geometries");
-        if (list != geometry.end() && list->is_array())
-            for (const Json& one : *list)
+        if (const auto list = findList(geometry, "geometries"))
+            for (const Json one : *list)
                 if (auto e = readGeometry(one, reading, into)) return e;
         return {};
     }
     if (type != "Polygon" && type != "MultiPolygon") return {};
-    if (coordinates == geometry.end() || !coordinates->is_array())
-        return damaged("feature", reading.number, "a polygon has no coordinates");
+    const auto coordinates = findList(geometry, "coordinates");
+    if (!coordinates) return damaged("feature", reading.number, "a polygon has no coordinates");
     if (type == "Polygon") return readPolygon(*coordinates, reading, into);
-    for (const Json& one : *coordinates)
-        if (auto e = readPolygon(one, reading, into)) return e;
+    for (const Json one : *coordinates) {
+        simdjson::dom::array rings;
+        if (one.get(rings) != simdjson::SUCCESS)
+            return damaged("feature", reading.number, "a polygon is no list of rings");
+        if (auto e = readPolygon(rings, reading, into)) return e;
+    }
     return {};
 }
 
 /// Words for the edges of the first outline.
-void readTags(const Json& properties, Footprint& footprint) {
-    const auto tags = properties.find("tags");
-    if (tags == properties.end() || !tags->is_array() || footprint.empty()) return;
+void readTags(Json properties, Footprint& footprint) {
+    const auto tags = findList(properties, "tags");
+    if (!tags || footprint.empty()) return;
     Ring& ring = footprint.polygons[0].outer;
-    for (size_t i = 0; i < std::min(tags->size(), ring.size()); ++i)
-        if ((*tags)[i].is_string()) ring.edges[i].tag = footprint.tag(textOf((*tags)[i]));
+    size_t edge = 0;
+    for (const Json tag : *tags) {
+        if (edge == ring.size()) return;
+        if (std::string_view text; tag.get(text) == simdjson::SUCCESS)
+            ring.edges[edge].tag = footprint.tag(textOf(text));
+        ++edge;
+    }
+}
+
+/// What a feature says beside its outline.
+void readWords(Json object, Feature& feature) {
+    const auto properties = find(object, "properties"), id = find(object, "id");
+    simdjson::dom::object words;
+    if (properties && properties->get(words) == simdjson::SUCCESS) {
+        readProperties(words, feature.properties);
+        readTags(*properties, feature.footprint);
+        feature.name = textOf(member(*properties, "name"));
+    }
+    std::string_view text;
+    int64_t number = 0;
+    uint64_t large = 0;
+    if (!id) return;
+    if (id->get(text) == simdjson::SUCCESS)
+        feature.name = textOf(text);
+    else if (id->is_int64() && id->get(number) == simdjson::SUCCESS)
+        feature.name = std::to_string(number);
+    else if (id->is_uint64() && id->get(large) == simdjson::SUCCESS)
+        feature.name = std::to_string(large);
 }
 
 /// `object` is a feature, or a geometry that stands alone.
-std::optional<Error> readFeature(const Json& object, Reading& reading) {
+std::optional<Error> readFeature(Json object, Reading& reading) {
     ++reading.number;
     Feature feature;
     feature.place = reading.number;
     const bool isFeature = member(object, "type") == "Feature";
-    const auto geometry = isFeature ? object.find("geometry") : object.end();
-    if (isFeature && geometry == object.end()) return damaged("feature", reading.number, "it has no geometry");
-    if (auto e = readGeometry(isFeature ? *geometry : object, reading, feature.footprint)) return e;
+    const auto geometry = isFeature ? find(object, "geometry") : object;
+    if (!geometry) return damaged("feature", reading.number, "it has no geometry");
+    if (auto e = readGeometry(*geometry, reading, feature.footprint)) return e;
     if (feature.footprint.empty()) return {};
     if (auto e = reading.budget.addFeature()) return e;
-    if (isFeature) {
-        const auto properties = object.find("properties");
-        if (properties != object.end() && properties->is_object()) {
-            readProperties(*properties, feature.properties);
-            readTags(*properties, feature.footprint);
-            feature.name = shortened(printable(member(*properties, "name")), longestText);
-        }
-        const auto id = object.find("id");
-        if (id != object.end() && id->is_string())
-            feature.name = textOf(*id);
-        else if (id != object.end() && id->is_number_integer())
-            feature.name = id->dump();
-    }
+    if (isFeature) readWords(object, feature);
     reading.features.list.push_back(std::move(feature));
     return {};
 }
@@ -141,62 +156,37 @@ Result<Plane> layOnPlane(Features& features, bool isPlane, double farthest_m) {
     return plane;
 }
 
-/// Reads the features of a file by themselves, on all threads. False where one of them, or what is left of the file, is
-/// no JSON: then nothing was read.
-bool readSplit(const SplitFile& file, Reading& reading, std::optional<Error>& error) {
+/// Reads the features of a file by themselves, on all threads.
+std::optional<Error> readEach(const std::vector<Json>& objects, Reading& reading) {
     struct One {
-        bool isJson = false;
         size_t points = 0;
         Features features{};  ///< one at most
         std::optional<Error> error{};
     };
-    std::vector<One> all(file.features.size());
+    std::vector<One> all(objects.size());
     constexpr size_t together = 32;
-    const auto read = [&](size_t i) {
-        Reading own{reading.limits, reading.progress, ReadBudget(reading.limits), {}, i};
-        const Json object = Json::parse(file.features[i], nullptr, false);
-        all[i].isJson = !object.is_discarded();
-        if (all[i].isJson) all[i].error = readFeature(object, own);
-        all[i].points = own.budget.points();
-        all[i].features = std::move(own.features);
-    };
     parallelFor((all.size() + together - 1) / together, 0, reading.progress, [&](size_t chunk, int) {
-        for (size_t i = chunk * together; i < std::min((chunk + 1) * together, all.size()); ++i) read(i);
+        for (size_t i = chunk * together; i < std::min((chunk + 1) * together, all.size()); ++i) {
+            Reading own{reading.limits, reading.progress, ReadBudget(reading.limits), {}, i};
+            all[i].error = readFeature(objects[i], own);
+            all[i].points = own.budget.points();
+            all[i].features = std::move(own.features);
+        }
     });
-    if (cancelled(reading.progress)) return error = cancelledError(), true;
-    if (!std::all_of(all.begin(), all.end(), [](const One& one) { return one.isJson; })) return false;
+    if (cancelled(reading.progress)) return cancelledError();
     for (One& one : all) {
-        error = reading.budget.addPoints(one.points);
+        auto error = reading.budget.addPoints(one.points);
         if (!error) error = one.error;
         if (!error && !one.features.list.empty()) error = reading.budget.addFeature();
-        if (error) return true;
+        if (error) return error;
         for (Feature& feature : one.features.list) reading.features.list.push_back(std::move(feature));
     }
-    return true;
+    return {};
 }
 
-/// Reads a file feature by feature where that can be, else as a whole. Gives what is left of it beside its features.
-Result<Json> readFeatures(std::string_view bytes, Reading& reading) {
-    if (const auto split = splitFeatures(bytes)) {
-        Json rest = Json::parse(split->rest, nullptr, false);
-        const bool isSplit = rest.is_object() && member(rest, "type") == "FeatureCollection" &&
-                             rest["features"].is_array() && rest["features"].size() == 1;
-        std::optional<Error> error;
-        if (isSplit && readSplit(*split, reading, error)) return error ? Result<Json>(*error) : std::move(rest);
-    }
-    Result<Json> parsed = parseGeoJson(bytes);
-    if (!parsed.ok()) return parsed.error();
-    const Json& root = *parsed;
-    const auto list = root.is_object() ? root.find("features") : root.end();
-    if (member(root, "type") == "FeatureCollection" && list != root.end() && list->is_array()) {
-        for (const Json& object : *list) {
-            if (cancelled(reading.progress)) return cancelledError();
-            if (auto e = readFeature(object, reading)) return *e;
-        }
-    } else if (auto e = readFeature(root, reading)) {
-        return *e;
-    }
-    return parsed;
+std::optional<Error> readFeatures(Json root, Reading& reading) {
+    const auto list = member(root, "type") == "FeatureCollection" ? findList(root, "features") : std::nullopt;
+    return list ? readEach(itemsOf(*list), reading) : readFeature(root, reading);
 }
 
 /// Makes outlines sound, on all threads; the first feature's error that can't be.
@@ -226,11 +216,12 @@ std::optional<Error> makeSound(Reading& reading, const Plane& plane) {
 Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits, const Progress* progress) {
     if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Budget, "it is too large"};
     Reading reading{limits, progress, ReadBudget(limits)};
-    const Result<Json> rest = readFeatures(bytes, reading);
-    if (!rest.ok()) return rest.error();
+    const Result<JsonFile> file = parseGeoJson(bytes);
+    if (!file.ok()) return file.error();
+    if (auto e = readFeatures(file->root, reading)) return *e;
     if (reading.features.list.empty())
         return Error{Error::Kind::Input, "it has no polygons; GeoJSON's Polygon and MultiPolygon are read"};
-    const auto plane = layOnPlane(reading.features, namesPlane(*rest), limits.footprint.farthest_m);
+    const auto plane = layOnPlane(reading.features, namesPlane(file->root), limits.footprint.farthest_m);
     if (!plane) return plane.error();
     if (auto e = makeSound(reading, *plane)) return *e;
     return std::move(reading.features);

@@ -1,15 +1,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "modeler/plan/geojson_parts.h"
 #include "modeler/plan/read_parts.h"
 
 namespace sgm::plan {
 namespace {
-
-using Json = nlohmann::json;
 
 /// What was read so far; points as the file has them.
 struct Reading {
@@ -18,14 +15,14 @@ struct Reading {
     uint64_t number = 0;  ///< of the feature
 };
 
-std::optional<Error> readLine(const Json& list, Reading& reading, std::vector<Vec2>& line) {
-    if (!list.is_array()) return damaged("feature", reading.number, "a line is no list of positions");
+std::optional<Error> readLine(simdjson::dom::array list, Reading& reading, std::vector<Vec2>& line) {
     if (auto e = reading.budget.addPoints(list.size())) return e;
-    for (const Json& at : list) {
-        if (!at.is_array() || at.size() < 2 || !at[0].is_number() || !at[1].is_number())
+    for (const Json at : list) {
+        const auto position = positionOf(at);
+        if (!position)
             return damaged("feature", reading.number,
                            fmt::format("position {} of a line is not a list of two numbers", line.size() + 1));
-        line.push_back({at[0].get<double>(), at[1].get<double>()});
+        line.push_back(*position);
         if (!std::isfinite(line.back().x) || !std::isfinite(line.back().z))
             return damaged("feature", reading.number, fmt::format("position {} of a line is not finite", line.size()));
     }
@@ -33,39 +30,41 @@ std::optional<Error> readLine(const Json& list, Reading& reading, std::vector<Ve
     return {};
 }
 
-std::optional<Error> readGeometry(const Json& geometry, Reading& reading, LineFeature& into) {
+std::optional<Error> readGeometry(Json geometry, Reading& reading, LineFeature& into) {
     if (!geometry.is_object()) return {};
     const std::string_view type = member(geometry, "type");
     if (type == "GeometryCollection") {
-        const auto list = geometry.find("geometries");
-        if (list != geometry.end() && list->is_array())
-            for (const Json& one : *list)
+        if (const auto list = findList(geometry, "geometries"))
+            for (const Json one : *list)
                 if (auto e = readGeometry(one, reading, into)) return e;
         return {};
     }
     if (type != "LineString" && type != "MultiLineString") return {};
-    const auto coordinates = geometry.find("coordinates");
-    if (coordinates == geometry.end() || !coordinates->is_array())
-        return damaged("feature", reading.number, "a line has no coordinates");
+    const auto coordinates = findList(geometry, "coordinates");
+    if (!coordinates) return damaged("feature", reading.number, "a line has no coordinates");
     if (type == "LineString") return readLine(*coordinates, reading, into.lines.emplace_back());
-    for (const Json& one : *coordinates)
-        if (auto e = readLine(one, reading, into.lines.emplace_back())) return e;
+    for (const Json one : *coordinates) {
+        simdjson::dom::array list;
+        if (one.get(list) != simdjson::SUCCESS)
+            return damaged("feature", reading.number, "a line is no list of positions");
+        if (auto e = readLine(list, reading, into.lines.emplace_back())) return e;
+    }
     return {};
 }
 
-std::optional<Error> readFeature(const Json& object, Reading& reading) {
+std::optional<Error> readFeature(Json object, Reading& reading) {
     ++reading.number;
     LineFeature feature;
     feature.place = reading.number;
     const bool isFeature = member(object, "type") == "Feature";
-    const auto geometry = isFeature ? object.find("geometry") : object.end();
-    if (isFeature && geometry == object.end()) return damaged("feature", reading.number, "it has no geometry");
-    if (auto e = readGeometry(isFeature ? *geometry : object, reading, feature)) return e;
+    const auto geometry = isFeature ? find(object, "geometry") : object;
+    if (!geometry) return damaged("feature", reading.number, "it has no geometry");
+    if (auto e = readGeometry(*geometry, reading, feature)) return e;
     if (feature.lines.empty()) return {};
     if (auto e = reading.budget.addFeature()) return e;
-    const auto properties = isFeature ? object.find("properties") : object.end();
-    if (isFeature && properties != object.end() && properties->is_object())
-        readProperties(*properties, feature.properties);
+    const auto properties = isFeature ? find(object, "properties") : std::nullopt;
+    simdjson::dom::object words;
+    if (properties && properties->get(words) == simdjson::SUCCESS) readProperties(words, feature.properties);
     reading.lines.list.push_back(std::move(feature));
     return {};
 }
@@ -74,16 +73,16 @@ std::optional<Error> readFeature(const Json& object, Reading& reading) {
 
 Result<Lines> readGeoJsonLines(std::string_view bytes, const ReadLimits& limits, const Progress* progress) {
     if (bytes.size() > limits.mostBytes) return Error{Error::Kind::Budget, "it is too large"};
-    const Result<Json> root = parseGeoJson(bytes);
-    if (!root.ok()) return root.error();
+    const Result<JsonFile> file = parseGeoJson(bytes);
+    if (!file.ok()) return file.error();
     Reading reading{ReadBudget(limits)};
-    const auto list = root->is_object() ? root->find("features") : root->end();
-    if (member(*root, "type") == "FeatureCollection" && list != root->end() && list->is_array()) {
-        for (const Json& object : *list) {
+    const bool isCollection = member(file->root, "type") == "FeatureCollection";
+    if (const auto list = isCollection ? findList(file->root, "features") : std::nullopt) {
+        for (const Json object : *list) {
             if (cancelled(progress)) return cancelledError();
             if (auto e = readFeature(object, reading)) return *e;
         }
-    } else if (auto e = readFeature(*root, reading)) {
+    } else if (auto e = readFeature(file->root, reading)) {
         return *e;
     }
     if (reading.lines.list.empty())
@@ -92,7 +91,7 @@ Result<Lines> readGeoJsonLines(std::string_view bytes, const ReadLimits& limits,
     for (const LineFeature& feature : reading.lines.list)
         for (const auto& line : feature.lines)
             for (const Vec2 p : line) box.add(p);
-    const Plane plane = planeOf(box, namesPlane(*root), limits.footprint.farthest_m);
+    const Plane plane = planeOf(box, namesPlane(file->root), limits.footprint.farthest_m);
     reading.lines.fromDegrees = plane.fromDegrees;
     for (LineFeature& feature : reading.lines.list)
         for (auto& line : feature.lines)

@@ -177,6 +177,57 @@ TEST(GeoJson, FaultsOfAListAreThoseOfTheFile) {
     EXPECT_EQ(messageOf(list(good), few), "it has more than 2 features");
 }
 
+/// What one parser of JSON reads and another doesn't is read all the same.
+TEST(GeoJson, WhatJsonMayHoldIsRead) {
+    const auto wordsOf = [](const std::string& text) {
+        const auto f = readGeoJson(text);
+        if (!f.ok()) return f.error().message;
+        std::string all = f->list[0].name;
+        for (const Property& p : f->list[0].properties)
+            all += fmt::format(" {}={}", p.name,
+                               p.value.index() == 0 ? std::get<0>(p.value) : fmt::format("{}", std::get<1>(p.value)));
+        return all;
+    };
+    const auto featureOf = [](const std::string& id, const std::string& properties) {
+        return R"({"type":"Feature","id":)" + id + R"(,"properties":)" + properties + R"(,"geometry":)" +
+               polygonText(square) + "}";
+    };
+    EXPECT_EQ(wordsOf(featureOf("7", R"({"b":1,"a":"x","b":2,"c":[],"aa":false})")), "7 a=x aa=false b=2")
+        << "by name, the last of a name";
+    EXPECT_EQ(wordsOf(featureOf("-0", R"({"n":-0,"m":-0.0,"e":1E2})")), "0 e=100 m=-0 n=0");
+    EXPECT_EQ(wordsOf(featureOf("18446744073709551615", R"({"n":9007199254740993})")),
+              "18446744073709551615 n=9007199254740992");
+    EXPECT_EQ(wordsOf(featureOf("184467440737095516150", R"({"n":123456789012345678901234})")),
+              " n=1.2345678901234569e+23")
+        << "no whole number of 64 bits is no id";
+    EXPECT_EQ(wordsOf("\xEF\xBB\xBF" + featureOf("7.5", R"({"name":"é\u00e9"})")), "éé name=éé")
+        << "a mark of byte order";
+    EXPECT_EQ(wordsOf(featureOf("7", "\"\xFF\"")), "line 1: this is no JSON") << "no UTF-8";
+    EXPECT_EQ(wordsOf(featureOf("7", "\"\t\"")), "line 1: this is no JSON");
+    EXPECT_EQ(wordsOf(featureOf("07", "{}")), "line 1: this is no JSON");
+    const auto nested = [&](size_t lists) {
+        return wordsOf(featureOf("7", R"({"a":)" + std::string(lists, '[') + "1" + std::string(lists, ']') + "}"));
+    };
+    EXPECT_EQ(nested(62), "7");
+    EXPECT_THAT(nested(63), HasSubstr("lists nest deeper than 64 at byte 106"));
+}
+
+TEST(GeoJson, NumbersAreTheNearestDoubles) {
+    test::Draws draw(3);
+    for (int round = 0; round < 300; ++round) {
+        const int digits = draw.whole(1, 25);
+        std::string number = draw.whole(0, 1) ? "-" : "";
+        for (int i = 0; i < digits; ++i)
+            number += static_cast<char>('0' + (i == 0 ? draw.whole(1, 9) : draw.whole(0, 9)));
+        number += ".";
+        for (int i = draw.whole(1, 25); i > 0; --i) number += static_cast<char>('0' + draw.whole(0, 9));
+        if (draw.whole(0, 1)) number += "e" + std::to_string(draw.whole(-320, 250));
+        const auto f = readGeoJson(collection(featureText(square, R"({"n":)" + number + "}")));
+        ASSERT_TRUE(f.ok()) << number << ": " << f.error().message;
+        EXPECT_EQ(std::get<double>(*f->list[0].find("n")), std::strtod(number.c_str(), nullptr)) << number;
+    }
+}
+
 TEST(GeoJson, PlansOfMetresTakenForDegreesAreToldAsSuch) {
     const std::string plan = R"({"type":"Polygon","coordinates":[[[0,0],[20,0],[20,10],[0,10],[0,0]]])";
     const auto f = readGeoJson(plan + "}");
