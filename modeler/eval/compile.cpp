@@ -33,18 +33,18 @@ float foldedValue(const Graph& graph, const Node& n, std::span<const float> args
 
 }  // namespace
 
-Tape Compiler::run(const field::Field& field) {
+Tape Compiler::run(const field::Field& field, int wanted) {
     // What tells values apart hangs on the graph, what orders them on numbers: two threads can share the passes.
     constexpr NodeId many = 1 << 14;
-    const int threads = root_ >= many ? threads_ : 1;
+    const int threads = root_ >= many ? wanted : 1;
+    seconds_.resize(nodeClasses_.size());
     parallelFor(2, threads, nullptr, [&](size_t task, int) {
         if (task == 1) return hashNodes();
         reach();
         for (NodeId id = 0; id <= root_; ++id)
             if (nodeClasses_[id].kind != NodeClass::Unreached) decide(id);
     });
-    order(threads);
-    return write(scaleOf(field));
+    return write(order(field, threads));
 }
 
 void Compiler::reach() {
@@ -61,9 +61,9 @@ float Compiler::number(NodeId id) {
     const Node& n = graph_.node(id);
     if (n.op == codeOf<ops::Literal>) return std::bit_cast<float>(n.data);
     if (n.op == codeOf<ops::Slot>) return slots_[n.data];
-    args_.clear();
-    for (const field::Operand& o : graph_.operands(id)) args_.push_back(fateOf(o.node).value());
-    return foldedValue(graph_, n, args_);
+    scratch_.numbers.clear();
+    for (const field::Operand& o : graph_.operands(id)) scratch_.numbers.push_back(fateOf(o.node).value());
+    return foldedValue(graph_, n, scratch_.numbers);
 }
 
 std::optional<NodeId> Compiler::passesOn(NodeId id) const {
@@ -78,22 +78,53 @@ std::optional<NodeId> Compiler::passesOn(NodeId id) const {
 }
 
 void Compiler::decide(NodeId id) {
-    NodeClass& nodeClass = nodeClasses_[id];
     const auto operands = graph_.operands(id);
-    if (isInput(id)) return;
+    if (isInput(id)) {
+        inputs_.push_back(id);
+        return;
+    }
+    if (operands.size() == 2) return decidePair(id, standIn(operands[0].node), standIn(operands[1].node));
     const auto isNumber = [&](const field::Operand& o) { return fateOf(o.node).kind == NodeClass::Constant; };
     if (std::all_of(operands.begin(), operands.end(), isNumber))
-        nodeClass = {NodeClass::Constant, 0, 0, std::bit_cast<uint32_t>(number(id))};
-    else if (const auto same = passesOn(id))
-        nodeClass = {NodeClass::Same, 0, 0, *same};
+        nodeClasses_[id] = {NodeClass::Constant, 0, 0, std::bit_cast<uint32_t>(number(id))};
     else
         decideInstruction(id);
 }
 
-void Compiler::decideInstruction(NodeId id) {
-    const auto heavy = byRegisterNeed(id, sorted_);
-    nodeClasses_[id] = {NodeClass::Instruction, heavy.size() > 1, need(heavy), heavy.empty() ? id : heavy[0]};
+/// Most nodes have two operands: what stands for them is looked up once.
+void Compiler::decidePair(NodeId id, NodeId a, NodeId b) {
+    NodeClass& nodeClass = nodeClasses_[id];
+    const bool isNumberA = nodeClasses_[a].kind == NodeClass::Constant,
+               isNumberB = nodeClasses_[b].kind == NodeClass::Constant;
+    if (isNumberA && isNumberB) {
+        nodeClass = {NodeClass::Constant, 0, 0, std::bit_cast<uint32_t>(number(id))};
+        return;
+    }
+    if (isNumberA || isNumberB)
+        if (const auto same = passesOn(id)) {
+            nodeClass = {NodeClass::Same, 0, 0, *same};
+            return;
+        }
+    std::array<NodeId, 2> heavy;
+    size_t count = 0;
+    if (isHeavy(a)) heavy[count++] = a;
+    if (isHeavy(b)) heavy[count++] = b;
+    if (count == 2 && isHeavier(b, a)) std::swap(heavy[0], heavy[1]);
+    setInstruction(id, std::span(heavy).first(count));
+}
+
+void Compiler::decideInstruction(NodeId id) { setInstruction(id, byRegisterNeed(id, scratch_.sorted)); }
+
+void Compiler::setInstruction(NodeId id, std::span<const NodeId> heavy) {
+    const auto count = static_cast<uint32_t>(std::min<size_t>(heavy.size(), 3));
+    nodeClasses_[id] = {NodeClass::Instruction, count, need(heavy), heavy.empty() ? id : heavy[0]};
+    if (count > 1) seconds_[id] = heavy[1];
     ++instructions_;
+}
+
+/// Whether `a` needs more registers than `b`; the older one first where both need as many.
+bool Compiler::isHeavier(NodeId a, NodeId b) const {
+    return nodeClasses_[a].need != nodeClasses_[b].need ? nodeClasses_[a].need > nodeClasses_[b].need : a < b;
 }
 
 /// Operands that are instructions, those that need most registers first: the order that keeps fewest of them busy.
@@ -101,19 +132,9 @@ std::span<const NodeId> Compiler::byRegisterNeed(NodeId id, std::vector<NodeId>&
     const auto operands = graph_.operands(id);
     if (sorted.size() < operands.size()) sorted.resize(operands.size());
     NodeId *const begin = sorted.data(), *end = begin;
-    for (const field::Operand& o : operands) {
-        const NodeId at = standIn(o.node);
-        const NodeClass& nodeClass = nodeClasses_[at];
-        if (nodeClass.kind == NodeClass::Instruction && nodeClass.need > 0) *end++ = at;  // inputs need none
-    }
-    const auto heavier = [&](NodeId a, NodeId b) {
-        return nodeClasses_[a].need != nodeClasses_[b].need ? nodeClasses_[a].need > nodeClasses_[b].need : a < b;
-    };
-    if (end - begin == 2) {
-        if (heavier(begin[1], begin[0])) std::swap(begin[0], begin[1]);
-    } else if (end - begin > 2) {
-        std::sort(begin, end, heavier);
-    }
+    for (const field::Operand& o : operands)
+        if (const NodeId at = standIn(o.node); isHeavy(at)) *end++ = at;  // inputs need no register
+    std::sort(begin, end, [&](NodeId a, NodeId b) { return isHeavier(a, b); });
     return {begin, end};
 }
 
@@ -124,8 +145,10 @@ uint32_t Compiler::need(std::span<const NodeId> heavy) const {
 }
 
 /// Post-order over what is left, and beside it what hangs on nothing of it. Gives values the keys that the builder
-/// knows them by: far fewer than nodes, most of which are numbers.
-void Compiler::order(int threads) {
+/// knows them by: far fewer than nodes, most of which are numbers. Gives what is said of the field as a whole, for
+/// which a thread is free meanwhile.
+TapeBuilder::Scale Compiler::order(const field::Field& field, int threads) {
+    TapeBuilder::Scale scale{};
     // Two halves of what the root reads. Both may order what they share: then it stands in the first.
     std::array<PageVector<NodeId>, 2> halves;
     std::vector<NodeId> heavy;
@@ -136,7 +159,7 @@ void Compiler::order(int threads) {
         if (task == 0) builder_.reserve(instructions_ + 3, instructions_);
         if (task == 1) halves[0] = inOrder(std::span(heavy).first(middle));
         if (task == 2) halves[1] = inOrder(std::span(heavy).subspan(middle));
-        if (task == 3) namePieces();
+        if (task == 3) namePieces(), scale = scaleOf(field);
     });
     std::vector<bool> done(nodeClasses_.size());
     const auto put = [&](NodeId id) {
@@ -148,6 +171,7 @@ void Compiler::order(int threads) {
     ordered_.reserve(halves[0].size() + halves[1].size() + 1);
     for (const PageVector<NodeId>& half : halves) std::for_each(half.begin(), half.end(), put);
     if (isInstruction) put(standIn(root_));
+    return scale;
 }
 
 /// These values and all that they consist of, each after what it is made of; on a stack of our own.
@@ -156,6 +180,7 @@ PageVector<NodeId> Compiler::inOrder(std::span<const NodeId> values) const {
     std::vector<bool> done(nodeClasses_.size());
     std::vector<NodeId> sorted;
     std::vector<std::pair<NodeId, bool>> stack;
+    constexpr NodeId ahead = 64;
     for (size_t i = values.size(); i-- > 0;) stack.push_back({values[i], false});
     while (!stack.empty()) {
         const auto [id, ready] = stack.back();
@@ -168,13 +193,16 @@ PageVector<NodeId> Compiler::inOrder(std::span<const NodeId> values) const {
         }
         stack.push_back({id, true});
         const NodeClass& nodeClass = nodeClasses_[id];
-        if (!nodeClass.forks) {
-            if (nodeClass.what != id) stack.push_back({nodeClass.what, false});
+        // What a value is made of lies below it, mostly in a row.
+        __builtin_prefetch(&nodeClasses_[id - std::min(id, ahead)]);
+        if (nodeClass.heavy > 2) {
+            const auto heavy = byRegisterNeed(id, sorted);
+            for (size_t i = heavy.size(); i-- > 0;)
+                if (!done[heavy[i]]) stack.push_back({heavy[i], false});
             continue;
         }
-        const auto heavy = byRegisterNeed(id, sorted);
-        for (size_t i = heavy.size(); i-- > 0;)
-            if (!done[heavy[i]]) stack.push_back({heavy[i], false});
+        if (nodeClass.heavy == 2) stack.push_back({seconds_[id], false});
+        if (nodeClass.heavy > 0) stack.push_back({nodeClass.what, false});
     }
     return ordered;
 }
@@ -237,8 +265,8 @@ void Compiler::namePieces() {
 TapeBuilder::Scale Compiler::scaleOf(const field::Field& field) const {
     const Box3f& box = field.bounds;
     uint32_t chosen = 0;
-    for (NodeId id = 0; id <= root_; ++id)
-        if (pieces_[id] != 0 && isInput(id)) chosen |= 1u << graph_.node(id).data;
+    for (const NodeId id : inputs_)
+        if (pieces_[id] != 0) chosen |= 1u << graph_.node(id).data;
     if (box.empty() || !box.finite()) return {field.lipschitz, 0, chosen};
     float most = 0;
     for (const Vec3f& end : {box.lo, box.hi})
@@ -252,8 +280,7 @@ TapeBuilder::Scale Compiler::scaleOf(const field::Field& field) const {
 Tape Compiler::write(TapeBuilder::Scale scale) {
     TapeBuilder builder = std::move(builder_);
     builder.begin(ordered_.size() + 3, ordered_.size());
-    for (NodeId id = 0; id <= root_; ++id) {
-        if (nodeClasses_[id].kind == NodeClass::Unreached || !isInput(id)) continue;
+    for (const NodeId id : inputs_) {
         nodeClasses_[id].what = static_cast<uint32_t>(ordered_.size()) + graph_.node(id).data;
         builder.bindInput(nodeClasses_[id].what, graph_.node(id).data);
     }
@@ -286,7 +313,7 @@ Grids::Grids(std::vector<field::SampledGridPtr> all) : list(std::move(all)) {
 }
 
 Tape compile(const field::Graph& graph, const field::Field& field, std::span<const float> constants, int threads) {
-    return Compiler(graph, field.value.id(), constants, threads).run(field);
+    return Compiler(graph, field.value.id(), constants).run(field, threads);
 }
 
 }  // namespace sgm::eval

@@ -18,12 +18,13 @@ using field::NodeId;
 struct NodeClass {
     enum Kind : uint32_t { Unreached, Constant, Same, Instruction };
     uint32_t kind : 2 = Unreached;
-    uint32_t forks : 1 = 0;  ///< of Instruction: several operands are instructions
+    /// Of Instruction: how many operands are instructions that need registers; 2 for two alone, 3 for more.
+    uint32_t heavy : 2 = 0;
     /// Of Instruction the registers to compute it (Sethi & Ullman 1970); of Constant 1 + its place in the tape's table,
     /// 0 where no instruction reads it.
-    uint32_t need : 29 = 0;
+    uint32_t need : 28 = 0;
     /// Of Constant the number's bits, of Same the node, of Instruction the value's key in TapeBuilder; before it has
-    /// one the operand that is an instruction, the node itself where none is.
+    /// one the first of its heavy operands, the node itself where none is.
     uint32_t what = 0;
 
     float value() const { return std::bit_cast<float>(what); }
@@ -31,14 +32,10 @@ struct NodeClass {
 
 class Compiler {
 public:
-    Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants, int threads = 0)
-        : graph_(graph),
-          threads_(threads),
-          root_(root),
-          slots_(constants),
-          nodeClasses_(size_t{root} + 1, NodeClass{}) {}
+    Compiler(const field::Graph& graph, NodeId root, std::span<const float> constants)
+        : graph_(graph), root_(root), slots_(constants), nodeClasses_(size_t{root} + 1, NodeClass{}) {}
 
-    Tape run(const field::Field& field);
+    Tape run(const field::Field& field, int threads = 0);
 
     // For when numbers change.
     NodeId root() const { return root_; }
@@ -61,10 +58,16 @@ public:
 private:
     void reach();
     void decide(NodeId id);
+    void decidePair(NodeId id, NodeId a, NodeId b);
     void decideInstruction(NodeId id);
+    void setInstruction(NodeId id, std::span<const NodeId> heavy);
+    bool isHeavy(NodeId id) const {
+        return nodeClasses_[id].kind == NodeClass::Instruction && nodeClasses_[id].need > 0;
+    }
+    bool isHeavier(NodeId a, NodeId b) const;
     std::span<const NodeId> byRegisterNeed(NodeId id, std::vector<NodeId>& sorted) const;
     uint32_t need(std::span<const NodeId> heavy) const;
-    void order(int threads);
+    TapeBuilder::Scale order(const field::Field& field, int threads);
     PageVector<NodeId> inOrder(std::span<const NodeId> values) const;
     void hashNodes();
     void namePieces();
@@ -79,13 +82,16 @@ private:
     bool isInput(NodeId id) const { return graph_.node(id).op == field::codeOf<field::ops::Input>; }
 
     const field::Graph& graph_;
-    const int threads_;
     const NodeId root_;
     std::span<const float> slots_;
     PageVector<NodeClass> nodeClasses_;
-    std::vector<float> args_;
-    std::vector<NodeId> sorted_;
-    size_t instructions_ = 0;  ///< nodes that are one; not all are read
+    struct {
+        std::vector<float> numbers;
+        std::vector<NodeId> sorted;
+    } scratch_;
+    std::vector<NodeId> inputs_;  ///< those reached
+    PageVector<NodeId> seconds_;  ///< by node with two or more heavy operands: the second
+    size_t instructions_ = 0;     ///< nodes that are one; not all are read
     PageVector<NodeId> ordered_;
     PageVector<uint64_t> hashes_;  ///< by node, of all that it consists of
     PageVector<uint32_t> pieces_;  ///< by node, see Instruction::piece
