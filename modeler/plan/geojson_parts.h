@@ -24,7 +24,7 @@ struct JsonFile {
     std::unique_ptr<simdjson::dom::parser> parser;  ///< holds what `root` is of
     Json root;
 };
-/// Error::Input with the line, or where lists nest too deep. O(bytes), some .4 GB a second.
+/// Error::Input with the line, or where lists nest too deep. O(bytes).
 Result<JsonFile> parseGeoJson(std::string_view bytes);
 
 /// The member of an object, the last one where several have that name; nothing where it has none or is no object.

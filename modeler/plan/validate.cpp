@@ -94,8 +94,8 @@ bool collide(const Segment& a, const Segment& b) {
     return meet(a.from, a.to, b.from, b.to);
 }
 
-/// Whether a ring turns to the left at every corner, and once in all: then no two of its edges cross. O(n), where a
-/// sweep over edges takes twenty times as long for an n of 16.
+/// Whether a ring turns to the left at every corner, and once in all: then no two of its edges cross. O(n), without the
+/// sweep over edges.
 bool isConvexRing(const Ring& ring) {
     const auto goesUp = [](LatticePoint d) { return d.z > 0 || (d.z == 0 && d.x > 0); };
     LatticePoint last = latticePoint(ring.points.back()), from = latticePoint(ring.points[0]), before = from - last;

@@ -156,9 +156,12 @@ double leastOneByOne(const Formula& formula, std::span<const Linear> leaves, std
 
 TEST(Formula, TheLeastInsideIsThatOfASearchBoxByBox) {
     Draws draw(7);
-    for (int round = 0; round < 40; ++round) {
-        const Footprint f =
-            round % 2 ? *ngon(3 + round, 5 + round) : footprintOf(polygonOf(test::comb(draw, 2 + round / 4)));
+    for (int round = 0; round < 44; ++round) {
+        Footprint f = round % 2 ? *ngon(3 + round, 5 + round) : footprintOf(polygonOf(test::comb(draw, 2 + round / 4)));
+        if (round >= 40) {  // courts, and polygons side by side
+            f = *plan::ring(30, 24, 4 + round % 4);
+            f.polygons.push_back(placed(*ell(16, 12, 5, 6), {1, 1}, {30, round - 42.}).polygons[0]);
+        }
         const Formula formula = *monotoneFormula(f);
         const auto outline = distancesOf(f);
         std::vector<Linear> leaves = outline;
