@@ -42,6 +42,7 @@ constexpr float reachCells = 0.4375f;       ///< a part's mesh is so near to whe
 constexpr float tornShare = 0.08f;          ///< of a round part's thickness: its mesh is so near
 constexpr double roundCells = 2;            ///< the thickness from which cells follow a round part
 constexpr float leastReachCells = 0.055f;   ///< however thin it is
+constexpr double leastAcross = 0.0625;      ///< cells: a plate that moves by less across them lies along the grid
 constexpr double probed = 1.1 * lineReach;  ///< of a scope: where its part is looked for
 
 /// A thin part, and the share of its surface that the mesh lacks; 0 where it is buried.
@@ -69,6 +70,15 @@ int plateAxis(const derive::Scope& scope, double cell_m) {
         found = axis;
     }
     return found;
+}
+
+/// Whether a plate lies across layers of cells, so that the mesh may have it in some of them alone.
+bool isTurned(const Candidate& plate, double cell_m) {
+    const int axis = plate.plateAxis;
+    const Vec3d across = plate.scope.axes * alongAxis(axis);
+    const double along = std::max({std::abs(across.x), std::abs(across.y), std::abs(across.z)});
+    const double longest_m = std::hypot(plate.scope.size[(axis + 1) % 3], plate.scope.size[(axis + 2) % 3]);
+    return longest_m * std::sqrt(std::max(0.0, 1 - along * along)) > leastAcross * cell_m;
 }
 
 /// Both faces of a plate.
@@ -319,7 +329,8 @@ Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation
     const auto cell = static_cast<double>(cell_m);
     std::vector<Candidate> thin = thinParts(derivation, model, roundCells * cell, cell, among);
     std::erase_if(thin, [&](const Candidate& c) {
-        if (c.isBox) return c.plateAxis >= 0 || !(cellThatHolds(c.scope) < cell);
+        // Of plates along the grid the mesh has each whole, or not at all.
+        if (c.isBox) return !(cellThatHolds(c.scope) < cell) || (c.plateAxis >= 0 && !isTurned(c, cell));
         const derive::SolidValue& solid = derivation.tree.solids[derivation.tree.shapes[model.shapeOf[c.part]].solid];
         return !solid.primitive || solid.primitive->plan != field::PlanUse::None;
     });
@@ -330,6 +341,7 @@ Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation
                            std::clamp(tornShare * static_cast<float>(minComponent(c.scope.size)),
                                       leastReachCells * cell_m, reachCells * cell_m)};
     const Presence presence(mesh, queries, {}, cell_m);
+    measureFacing(mesh, thin, model.shapeOf.size());
     probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();
     return lackedOf(thin);

@@ -40,9 +40,10 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
                                                int threads, Progress* progress,
                                                const std::vector<ThinPart>* among = nullptr);
 
-/// Of round parts, neither boxes nor over a plan, whose scope is somewhere thinner than two cells, and bars thinner
-/// than one: those whose surface the mesh has, but over a twelfth of their thickness away in more than a tenth of the
-/// places where findMissingParts looks; and those that it lacks. Else as that.
+/// Of round parts, neither boxes nor over a plan, whose scope is somewhere thinner than two cells, and of bars and
+/// turned plates, as walls with openings, thinner than one: those whose surface the mesh has, but over a twelfth of
+/// their thickness away in more than a tenth of the places where findMissingParts looks; and those that it lacks. Else
+/// as that.
 Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation, const Model& model,
                                             const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m, int threads,
                                             Progress* progress, const std::vector<ThinPart>* among = nullptr);
