@@ -24,12 +24,14 @@ constexpr int steps = 16;                  ///< between the samples on a line
 constexpr int halvings = 6;                ///< of a step around a crossing
 constexpr size_t fewestCrossings = 3;      ///< of a part that isn't buried
 constexpr double leastMissing = 0.1;       ///< share of the surface that a part in the list lacks
+constexpr double leastOfBounded = 0.02;    ///< the same where halving ended at the bound of triangles
 constexpr double mostlyFree = 0.9;         ///< of the lines through a plate meet both its faces
 constexpr double leastMissingArea = 0.01;  ///< share of the area of a plate that stands free
 constexpr double leastFacing = 0.7;        ///< cosine between a plate's faces and what isn't a torn edge
 constexpr double unsureArea = 4;           ///< more of that for each share of the lines that meet no face of the plate
 constexpr double mostUnsure = 0.25;        ///< at most
 constexpr double leastOfFaces = 0.03;      ///< the same of faces that are covered in part
+constexpr double leastExposed = 0.05;      ///< share of a bounded part's faces that has to be its surface
 constexpr double besideFace = 0.04;        ///< of half an extent: where either side of a face is looked at, at most
 constexpr double besideCells = 0.1;        ///< cells: the same
 /// Points of a face that are looked at.
@@ -51,6 +53,7 @@ struct Candidate {
     derive::Scope scope;
     double missing = 0;
     bool isBox = false;      ///< its faces are those of its scope
+    bool isBounded = false;  ///< cells around it are larger than it needs
     bool isPresent = false;  ///< along every line through the scope, by the mesh alone
     bool isWhole = false;    ///< told by the mesh alone
     int plateAxis = -1;      ///< across it, where the scope is thin along one axis alone
@@ -141,7 +144,7 @@ private:
         }
         if (met < fewestCrossings) return ofFaces;
         const double ofLines = static_cast<double>(lacks) / static_cast<double>(met);
-        return std::max(ofLines > leastMissing ? ofLines : 0,
+        return std::max(ofLines > (candidate.isBounded ? leastOfBounded : leastMissing) ? ofLines : 0,
                         candidate.isBox ? ofFaces : missingOfPlate(candidate, met));
     }
 
@@ -151,8 +154,13 @@ private:
         double most = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const double covered = candidate.facing_m2[static_cast<size_t>(axis)] / facesOf(candidate.scope, axis);
-            if (covered >= 1 - leastMissingArea || exposedShare(candidate, axis, tape, roughly) < leastRoughly)
+            if (covered >= 1 - leastMissingArea) continue;
+            if (candidate.isBounded) {  // where the mesh is tells more of a part with openings than its area does
+                const double exposed = exposedShare(candidate, axis, tape, closely), lacks = awayShare(candidate.part);
+                if (exposed >= leastExposed && lacks >= leastOfBounded) most = std::max(most, lacks);
                 continue;
+            }
+            if (exposedShare(candidate, axis, tape, roughly) < leastRoughly) continue;
             const double exposed = exposedShare(candidate, axis, tape, closely), lacks = 1 - covered / exposed;
             if (exposed >= mostlyFree && lacks >= (exposed < 1 ? leastOfFaces : leastMissingArea))
                 most = std::max(most, lacks);
@@ -190,10 +198,18 @@ private:
                 }
         evaluate(rows_, tape);
         const std::vector<OriginId>& owners = owners_.at(middles_, tape, tapes_.workspace());
-        size_t exposed = 0;
+        exposed_.clear();
         for (size_t i = 0; i < owners.size(); ++i)
-            exposed += values_[2 * i] < 0 && values_[2 * i + 1] >= 0 && owners[i] == candidate.part;
-        return static_cast<double>(exposed) / static_cast<double>(owners.size());
+            if (values_[2 * i] < 0 && values_[2 * i + 1] >= 0 && owners[i] == candidate.part)
+                exposed_.push_back(middles_[i]);
+        return static_cast<double>(exposed_.size()) / static_cast<double>(owners.size());
+    }
+
+    /// The share of what exposedShare() found last that the mesh isn't near.
+    double awayShare(OriginId part) const {
+        const auto isAway = [&](Vec3f p) { return !presence_.isNear(p, part); };
+        const auto away = std::count_if(exposed_.begin(), exposed_.end(), isAway);
+        return static_cast<double>(away) / static_cast<double>(exposed_.size());
     }
 
     /// What the mesh lacks of a plate that stands free, by area: of a turned one it may show posts, which lie so near
@@ -245,16 +261,16 @@ private:
     eval::PointList rows_, middles_;
     std::vector<float> values_;
     eval::SurfaceOwners owners_;
-    std::vector<Vec3f> inside_, outside_;
+    std::vector<Vec3f> inside_, outside_, exposed_;
 };
 
 /// The parts that cells of `held_m` don't hold, where they stand on hills; `cell` is the mesh's.
 std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Model& model, double held_m, double cell,
                                  const std::vector<ThinPart>* among) {
-    std::vector<bool> isWanted(model.shapeOf.size(), !among);
+    std::vector<bool> isWanted(model.shapeOf.size(), !among), areBounded(model.shapeOf.size());
     if (among)
         for (const ThinPart& part : *among)
-            if (part.kind == ThinPart::Kind::Part) isWanted[part.part] = true;
+            if (part.kind == ThinPart::Kind::Part) isWanted[part.part] = true, areBounded[part.part] = part.isBounded;
     std::vector<Candidate> thin;
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         if (model.shapeOf[part] == derive::none || !isWanted[part]) continue;
@@ -263,6 +279,7 @@ std::vector<Candidate> thinParts(const derive::Derivation& derivation, const Mod
         if (!(cellThatHolds(shape.scope) < held_m)) continue;
         thin.push_back({.part = part, .scope = derive::liftedScope(derivation, model.shapeOf[part])});
         thin.back().plateAxis = plateAxis(thin.back().scope, cell);
+        thin.back().isBounded = areBounded[part];
         thin.back().isBox = isBox(derivation.tree.solids[shape.solid], shape.scope);
     }
     return thin;

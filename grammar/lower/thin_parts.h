@@ -24,6 +24,8 @@ struct ThinPart {
     double missing = 0;
     std::vector<derive::Scope> places;  ///< where it is
     bool isShell = false;               ///< of a part: its walls are what is thin
+    int halvings = 0;                   ///< cells around it may be halved so often
+    bool isBounded = false;             ///< cells there would be halved more often if that took fewer triangles
 };
 
 /// Looks at the parts whose scope is somewhere thinner than a cell: on lines through the scope along its thin axes,
@@ -42,8 +44,8 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
 
 /// Of round parts, neither boxes nor over a plan, whose scope is somewhere thinner than two cells, and of bars and
 /// turned plates, as walls with openings, thinner than one: those whose surface the mesh has, but over a twelfth of
-/// their thickness away in more than a tenth of the places where findMissingParts looks; and those that it lacks. Else
-/// as that.
+/// their thickness away in more than a tenth of the places where findMissingParts looks, or a fiftieth of those `among`
+/// others that are bounded; and those that it lacks. Else as that.
 Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation, const Model& model,
                                             const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m, int threads,
                                             Progress* progress, const std::vector<ThinPart>* among = nullptr);

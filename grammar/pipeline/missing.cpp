@@ -25,6 +25,7 @@ struct Line {
     double thickness_m = 0, cell_m = 0;  ///< of the thinnest
     double missing = 0;                  ///< the sum of their shares
     bool atFaces = false;                ///< of boxes
+    bool isBounded = false;              ///< halving ended at the bound of triangles
     syntax::SourceSpan span{};           ///< of the first one's shape
 };
 
@@ -38,11 +39,11 @@ Lines linesOf(const Model& model, const std::vector<lower::ThinPart>& missing) {
         Line& line = lines[{part.file(), part.line(), m.kind}];
         if (line.parts++ == 0) {
             const derive::ShapeId shape = model.lowered->shapeOf[m.part];
-            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, m.face >= 0, {}};
+            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, m.face >= 0, false, {}};
             if (shape != derive::none) line.span = model.derivation.tree.shapes[shape].span;
         }
         line.thickness_m = std::min(line.thickness_m, m.thickness_m), line.cell_m = std::min(line.cell_m, m.cell_m);
-        line.missing += m.missing;
+        line.missing += m.missing, line.isBounded |= m.isBounded;
     }
     return lines;
 }
@@ -136,10 +137,11 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
         const bool one = line.parts == 1 && kind != lower::ThinPart::Kind::Eaves;
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", file, number),
-             fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface: {} holds {}{}",
+             fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface{}: {} holds {}{}",
                          nameOf(line, kind), one ? "is" : "are", whose, grid.cell_m, one ? "s" : "",
-                         100 * line.missing / static_cast<double>(line.parts), remedy(line.cell_m), one ? "it" : "them",
-                         whereNear(line.cell_m)),
+                         100 * line.missing / static_cast<double>(line.parts),
+                         line.isBounded ? ", for halving them often enough takes too many triangles" : "",
+                         remedy(line.cell_m), one ? "it" : "them", whereNear(line.cell_m)),
              true});
     }
     size_t ornaments = 0;

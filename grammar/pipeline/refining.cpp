@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <tuple>
 
@@ -41,17 +43,30 @@ public:
         auto missing = hold(lower::findMissingParts);
         if (!missing.ok()) return missing;
         const double seconds = halvingSeconds_;
-        for (Finder* const torn : {lower::findTornParts, lower::findTornRims})
-            if (const auto left = hold(*torn); !left.ok()) return left;
+        std::vector<lower::ThinPart> torn;
+        for (Finder* const finder : {lower::findTornParts, lower::findTornRims}) {
+            auto left = hold(*finder);
+            if (!left.ok()) return left;
+            if (finder == lower::findTornRims) torn = std::move(*left);
+        }
         auto eaves = hold(lower::findTornEaves);
         if (!eaves.ok()) return eaves;
         if (halvingSeconds_ > seconds && !missing->empty()) missing = find(lower::findMissingParts, &*missing);
         if (!missing.ok()) return missing;
-        for (lower::ThinPart& lacked : *eaves)
-            if (lacked.missing >= leastMissingEaves) {
-                lacked.cell_m = lacked.thickness_m;  // cells that hold it without being halved
-                missing->push_back(std::move(lacked));
-            }
+        const std::vector<lower::ThinPart> bounded = boundedParts();
+        if (!bounded.empty()) {
+            auto left = find(lower::findTornParts, &bounded);
+            if (!left.ok()) return left;
+            std::move(left->begin(), left->end(), std::back_inserter(torn));
+        }
+        for (lower::ThinPart& part : torn)
+            if (isBounded(part) && !isAmong(*missing, part)) missing->push_back(std::move(part));
+        for (lower::ThinPart& lacked : *eaves) {
+            if (lacked.missing < leastMissingEaves && !isBounded(lacked)) continue;
+            lacked.cell_m = lacked.thickness_m;  // cells that hold it without being halved
+            missing->push_back(std::move(lacked));
+        }
+        for (lower::ThinPart& part : *missing) part.halvings = most_, part.isBounded = isBounded(part);
         context_.stages.emplace_back("thin parts", findingSeconds_);
         if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
         return missing;
@@ -61,8 +76,22 @@ private:
     using Finder = decltype(lower::findMissingParts);
     /// Around a part, at its eaves, or beside a face.
     using Place = std::tuple<OriginId, bool, int>;
+    /// By how often cells are halved for it.
+    using PlacesByHalvings = std::array<std::vector<Place>, mostHalvingsOfCells + 1>;
     static Place placeOf(const lower::ThinPart& part) {
         return {part.part, part.kind == lower::ThinPart::Kind::Eaves, part.face};
+    }
+
+    bool isBounded(const lower::ThinPart& part) const { return bounded_.contains(placeOf(part)); }
+    /// What findTornParts is to look at closely.
+    std::vector<lower::ThinPart> boundedParts() const {
+        std::vector<lower::ThinPart> parts;
+        for (const Place& place : bounded_)
+            if (!std::get<1>(place)) parts.push_back({.part = std::get<0>(place), .places = {}, .isBounded = true});
+        return parts;
+    }
+    static bool isAmong(std::span<const lower::ThinPart> parts, const lower::ThinPart& part) {
+        return std::any_of(parts.begin(), parts.end(), [&](const lower::ThinPart& p) { return p.part == part.part; });
     }
 
     Result<std::vector<lower::ThinPart>> find(Finder& finder, const std::vector<lower::ThinPart>* among) {
@@ -79,27 +108,33 @@ private:
         for (;;) {
             auto found = find(finder, before ? &*before : nullptr);
             if (!found.ok()) return found;
-            const HalvedCells cells = cellsAround(*found);
+            PlacesByHalvings asked;
+            const HalvedCells cells = cellsAround(*found, asked);
             bool isRefined = false;
             for (int halvings = 1; halvings <= most_; ++halvings)
-                if (const Status s = refine(cells[static_cast<size_t>(halvings)], halvings, isRefined); !s.ok())
-                    return s.error();
+                if (const auto h = static_cast<size_t>(halvings); !cells[h].empty())
+                    if (const Status s = refine(cells[h], halvings, asked[h], isRefined); !s.ok()) return s.error();
             if (!isRefined) return found;
             before = std::move(*found);
         }
     }
 
-    HalvedCells cellsAround(const std::vector<lower::ThinPart>& missing) {
+    /// Leaves what the cells are halved for.
+    HalvedCells cellsAround(const std::vector<lower::ThinPart>& missing, PlacesByHalvings& asked) {
         HalvedCells cells;
         double cellCount = 0;
         const auto halve = [&](const lower::ThinPart& part, int halvings) {
             const double count = lower::countCellsAround(part, grid_);
-            if (cellCount + count > cellsPerTriangle * static_cast<double>(mostTriangles_)) return;
+            if (cellCount + count > cellsPerTriangle * static_cast<double>(mostTriangles_)) {
+                bounded_.insert(placeOf(part));
+                return;
+            }
             cellCount += count;
             mesh::CellSet around;
             lower::addCellsAround(part, grid_, around);
             int& tried = tried_[placeOf(part)];
             tried = std::max(halvings, halvingsIn(around));
+            asked[static_cast<size_t>(tried)].push_back(placeOf(part));
             for (const Vec3i cell : around.list()) cells[static_cast<size_t>(tried)].insert(cell);
         };
         std::vector<const lower::ThinPart*> thinner;
@@ -128,20 +163,20 @@ private:
 
     /// Halves cells so often. Where they come to take others with them that were halved more often, and hold there what
     /// larger ones don't, all of them are halved as often as these.
-    Status refine(const mesh::CellSet& cells, int halvings, bool& isRefined) {
-        if (cells.empty()) return Done{};
+    Status refine(const mesh::CellSet& cells, int halvings, const std::vector<Place>& asked, bool& isRefined) {
         const Stopwatch watch;
         for (;;) {
             auto refined = mesh::refineCells(mesh_, model_.tape, grid_, cells,
                                              {halvings, mostTriangles_, context_.threads}, context_.progress);
             if (!refined.ok()) return refined.error();
-            if (!*refined) break;
-            if (const int finest = halvingsIn((*refined)->cells); finest > halvings) {
+            if (refined->isBounded) bounded_.insert(asked.begin(), asked.end());
+            if (!refined->made) break;
+            if (const int finest = halvingsIn(refined->made->cells); finest > halvings) {
                 halvings = finest;
                 continue;
             }
-            mesh_ = std::move((*refined)->mesh);
-            for (const Vec3i cell : (*refined)->cells.list()) halved_[static_cast<size_t>(halvings)].insert(cell);
+            mesh_ = std::move(refined->made->mesh);
+            for (const Vec3i cell : refined->made->cells.list()) halved_[static_cast<size_t>(halvings)].insert(cell);
             isRefined = true;
             break;
         }
@@ -156,6 +191,7 @@ private:
     Context& context_;
     const size_t mostTriangles_;
     std::map<Place, int> tried_;  ///< halvings of the cells there
+    std::set<Place> bounded_;     ///< where halving ended at the bound of triangles
     HalvedCells halved_;
     double findingSeconds_ = 0, halvingSeconds_ = 0;
 };

@@ -219,7 +219,7 @@ public:
         if (CellSet first = affordable(cells); first.size() < cells.size() && options_.halvings > 1)
             return Error{Error::Kind::Budget, "cells halved so often have too many triangles"};
         else
-            cells = std::move(first);
+            isCut_ = first.size() < cells.size(), cells = std::move(first);
         if (Status s = meshFinely(cells.list()); !s) return s.error();
         cells = reachedOf(cells);
         for (int fitting = 0; fitting < mostFittings && !cells.empty(); ++fitting) {
@@ -246,6 +246,9 @@ public:
         }
         return std::optional<RefinedMesh>();
     }
+
+    /// Whether refine() left cells out for their triangles.
+    bool isCut() const { return isCut_; }
 
 private:
     /// The first cells, as many as the mesh can have triangles for, where the fine surface is about as large as the
@@ -368,21 +371,30 @@ private:
     SurfaceInCells coarseCells_;
     FineCells mesher_;
     SurfaceInCells fineCells_;
+    bool isCut_ = false;
 };
 
 }  // namespace
 
-Result<std::optional<RefinedMesh>> refineCells(const Mesh& mesh, const eval::Tape& field, const Grid& grid,
-                                               const CellSet& cells, const RefineOptions& options, Progress* progress) {
-    if (cells.empty() || mesh.hasPositionsOnly()) return std::optional<RefinedMesh>();
+Result<Refinement> refineCells(const Mesh& mesh, const eval::Tape& field, const Grid& grid, const CellSet& cells,
+                               const RefineOptions& options, Progress* progress) {
+    Refinement refinement;
+    if (cells.empty() || mesh.hasPositionsOnly()) return refinement;
     const bool isOneChunk = mesh.chunks.size() == 1;
     const Chunk joined = isOneChunk ? Chunk{} : joinChunks(mesh);
     for (RefineOptions now = options; now.halvings > 0; --now.halvings) {
-        auto refined = Refiner(isOneChunk ? mesh.chunks[0] : joined, field, grid, now, progress).refine(cells);
-        if (refined.ok() || refined.error().kind == Error::Kind::Cancelled) return refined;
+        Refiner refiner(isOneChunk ? mesh.chunks[0] : joined, field, grid, now, progress);
+        auto refined = refiner.refine(cells);
+        refinement.isBounded |= refiner.isCut();
+        if (refined.ok()) {
+            refinement.made = std::move(*refined);
+            break;
+        }
+        if (refined.error().kind == Error::Kind::Cancelled) return refined.error();
         if (refined.error().kind != Error::Kind::Budget) break;
+        refinement.isBounded = true;
     }
-    return std::optional<RefinedMesh>();
+    return refinement;
 }
 
 }  // namespace sgm::mesh

@@ -25,11 +25,17 @@ struct RefinedMesh {
     CellSet cells;
 };
 
+/// What came of halving cells.
+struct Refinement {
+    std::optional<RefinedMesh> made;  ///< nothing where no cells could be halved
+    bool isBounded = false;  ///< some cells weren't halved, or not so often, for the triangles would have been too many
+};
+
 /// Meshes `cells` of `grid` anew with smaller cells. Where the two surfaces don't fit on a side of the cells, more
 /// cells around are taken; where that doesn't help, or triangles would cross, a component of cells stays as it was.
-/// Nothing where no cells could be halved: so in a build without CGAL, and where smaller cells are too small or too
+/// No cells can be halved in a build without CGAL, and where smaller cells are too small or too
 /// many to be meshed. What meshing the cells takes, and O(n) in the mesh for copying it. Error::Cancelled.
-Result<std::optional<RefinedMesh>> refineCells(const Mesh& mesh, const eval::Tape& field, const Grid& grid,
-                                               const CellSet& cells, const RefineOptions& options, Progress* progress);
+Result<Refinement> refineCells(const Mesh& mesh, const eval::Tape& field, const Grid& grid, const CellSet& cells,
+                               const RefineOptions& options, Progress* progress);
 
 }  // namespace sgm::mesh

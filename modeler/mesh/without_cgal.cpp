@@ -24,9 +24,9 @@ Result<size_t> completeTips(Mesh&, const eval::Tape&, float, int, Progress*) { r
 
 Result<size_t> splitCurvedEdges(Mesh&, const eval::Tape&, double, int, Progress*) { return size_t{0}; }
 
-Result<std::optional<RefinedMesh>> refineCells(const Mesh&, const eval::Tape&, const Grid&, const CellSet&,
-                                               const RefineOptions&, Progress*) {
-    return std::optional<RefinedMesh>();
+Result<Refinement> refineCells(const Mesh&, const eval::Tape&, const Grid&, const CellSet&, const RefineOptions&,
+                               Progress*) {
+    return Refinement();
 }
 
 Result<Mesh> simplifyToShare(const Mesh&, double, int, Progress*) {

@@ -53,8 +53,9 @@ Refined refined(const Scene& scene, int resolution, const Box3f& box, int halvin
     auto fine =
         refineCells(made.mesh, tape, made.grid, cellsIn(made.grid, box), {halvings, ~size_t{0}, threads}, nullptr);
     EXPECT_TRUE(fine.ok());
-    if (!fine.ok() || !*fine) return made;
-    made.mesh = std::move((*fine)->mesh), made.cells = std::move((*fine)->cells);
+    if (!fine.ok() || !fine->made) return made;
+    EXPECT_FALSE(fine->isBounded);
+    made.mesh = std::move(fine->made->mesh), made.cells = std::move(fine->made->cells);
     const auto word = validate(made.mesh);
     EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects) << resolution << ' ' << halvings;
     return made;
@@ -117,10 +118,10 @@ TEST(Refine, CellsGrowAlongWhatTheyCut) {
 TEST(Refine, AgainWithSmallerCellsInside) {
     Refined made = refined(finned(0), 20, fin, 1);
     const auto fine = refineCells(made.mesh, finned(0).tape(), made.grid, cellsIn(made.grid, fin), {3}, nullptr);
-    ASSERT_TRUE(fine.ok() && *fine);
-    const auto word = validate((*fine)->mesh);
+    ASSERT_TRUE(fine.ok() && fine->made);
+    const auto word = validate(fine->made->mesh);
     EXPECT_TRUE(word.ok() && word->closed && word->outward && !word->selfIntersects);
-    EXPECT_NEAR(measure((*fine)->mesh).volume_m3, finnedVolume, 2e-3);
+    EXPECT_NEAR(measure(fine->made->mesh).volume_m3, finnedVolume, 2e-3);
 }
 
 TEST(Refine, GivesTheSameBytesAtAnyThreadCount) {
@@ -133,7 +134,8 @@ TEST(Refine, DoesNothingBeyondItsBoundOfTriangles) {
     const auto fine =
         refineCells(*coarse.mesh, finned(0).tape(), coarse.grid, cellsIn(coarse.grid, fin), {3, bound}, nullptr);
     ASSERT_TRUE(fine.ok());
-    EXPECT_FALSE(fine->has_value());
+    EXPECT_FALSE(fine->made);
+    EXPECT_TRUE(fine->isBounded);
 }
 
 TEST(Refine, HalvesTheFirstCellsThatItsBoundAllows) {
@@ -141,12 +143,13 @@ TEST(Refine, HalvesTheFirstCellsThatItsBoundAllows) {
     const BuiltMesh coarse = meshOf(finned(0), 20, 2, crisp);
     const size_t bound = coarse.mesh->triangleCount() + 100;
     const auto fine = refineCells(*coarse.mesh, finned(0).tape(), coarse.grid, wanted, {3, bound}, nullptr);
-    ASSERT_TRUE(fine.ok() && *fine);
+    ASSERT_TRUE(fine.ok() && fine->made);
+    EXPECT_TRUE(fine->isBounded);
     const auto all = std::count_if(wanted.list().begin(), wanted.list().end(),
-                                   [&](Vec3i cell) { return (*fine)->cells.contains(cell); });
+                                   [&](Vec3i cell) { return fine->made->cells.contains(cell); });
     EXPECT_GT(all, 0);
     EXPECT_LT(static_cast<size_t>(all), wanted.size());
-    const auto judged = validate((*fine)->mesh);
+    const auto judged = validate(fine->made->mesh);
     EXPECT_TRUE(judged.ok() && judged->closed && !judged->selfIntersects);
 }
 
