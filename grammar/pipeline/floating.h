@@ -26,6 +26,7 @@ struct FloatCause {
     Vec3d at;             ///< Gap, Touch: between the nearest points
     OriginId ours = 0;    ///< Gap, Touch: the part of the piece that is nearest
     OriginId theirs = 0;  ///< Gap, Touch: the nearest part of anything else. Else the thin part, or the cut
+    double whole_m = 0;   ///< cell_m before these are halved
 };
 
 struct Floating {

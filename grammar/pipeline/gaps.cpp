@@ -9,6 +9,7 @@
 #include <set>
 
 #include "grammar/derive/boxes.h"
+#include "grammar/pipeline/holding_cells.h"
 #include "grammar/pipeline/triangle_tree.h"
 #include "modeler/eval/evaluate.h"
 
@@ -328,6 +329,7 @@ Status findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, cons
                   Support& support, Progress* progress) {
     if (support.floating.empty() || mesh.hasPositionsOnly()) return Done{};
     const ThinLinks links(model, missing);
+    const HoldingCells holding(cell_m, missing);
     std::optional<GapFinder> gaps;
     for (size_t i = 0; i < std::min(support.floating.size(), mostPieces); ++i) {
         Floating& f = support.floating[i];
@@ -336,12 +338,9 @@ Status findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, cons
         const bool isFragment = !thin;
         if (isFragment) thin = links.findWallOf(f.piece, static_cast<double>(cell_m));
         if (thin) {
-            f.cause = {isFragment ? FloatCause::Kind::Fragment : FloatCause::Kind::Thin,
-                       thin->thickness_m,
-                       thin->cell_m,
-                       {},
-                       0,
-                       thin->part};
+            f.cause.kind = isFragment ? FloatCause::Kind::Fragment : FloatCause::Kind::Thin;
+            f.cause.width_m = thin->thickness_m, f.cause.cell_m = thin->cell_m, f.cause.theirs = thin->part;
+            f.cause.whole_m = holding.before(thin->cell_m, thin->halvings);
             continue;
         }
         if (!gaps) gaps.emplace(mesh);
@@ -390,7 +389,7 @@ std::string causeText(const Model& model, const FloatCause& cause, float cell_m)
                     ? fmt::format("{}, {:.3g} m thick, holds it and", part, cause.width_m)
                     : fmt::format("it is a fragment of a wall of {:.3g} m of {}, which", cause.width_m, part);
             return fmt::format("{} is thinner than a cell of {:.3g} m: --resolution {} shows it", what, cell_m,
-                               static_cast<int>(std::ceil(extent_m / cause.cell_m)));
+                               static_cast<int>(std::ceil(extent_m / cause.whole_m)));
         }
     }
     return {};

@@ -11,6 +11,7 @@
 #include "grammar/lower/solids.h"
 #include "grammar/pipeline/buried.h"
 #include "grammar/pipeline/gaps.h"
+#include "grammar/pipeline/holding_cells.h"
 #include "modeler/mesh/region.h"
 
 namespace sgm::pipeline {
@@ -25,6 +26,7 @@ struct Line {
     double thickness_m = 0, cell_m = 0;  ///< of the thinnest
     double missing = 0;                  ///< the sum of their shares
     bool atFaces = false;                ///< of boxes
+    int halvings = 0;                    ///< of cells around them that are allowed
     bool isBounded = false;              ///< halving ended at the bound of triangles
     syntax::SourceSpan span{};           ///< of the first one's shape
 };
@@ -39,7 +41,7 @@ Lines linesOf(const Model& model, const std::vector<lower::ThinPart>& missing) {
         Line& line = lines[{part.file(), part.line(), m.kind}];
         if (line.parts++ == 0) {
             const derive::ShapeId shape = model.lowered->shapeOf[m.part];
-            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, m.face >= 0, false, {}};
+            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, m.face >= 0, m.halvings, false, {}};
             if (shape != derive::none) line.span = model.derivation.tree.shapes[shape].span;
         }
         line.thickness_m = std::min(line.thickness_m, m.thickness_m), line.cell_m = std::min(line.cell_m, m.cell_m);
@@ -111,6 +113,7 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
                                          const std::vector<lower::ThinPart>& missing, const std::string& object) {
     constexpr size_t most = 5;
     const Lines lines = linesOf(model, missing);
+    const HoldingCells holding(grid.cell_m, missing);
     const std::string whose = object.empty() ? "the mesh's cells" : fmt::format("the cells of '{}'", object);
     const auto remedy = [&](double cell_m) {
         if (!object.empty()) return fmt::format("--object-cell {:g}", withTwoDigits(cell_m));
@@ -141,7 +144,8 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
                          nameOf(line, kind), one ? "is" : "are", whose, grid.cell_m, one ? "s" : "",
                          100 * line.missing / static_cast<double>(line.parts),
                          line.isBounded ? ", for halving them often enough takes too many triangles" : "",
-                         remedy(line.cell_m), one ? "it" : "them", whereNear(line.cell_m)),
+                         remedy(holding.before(line.cell_m, line.halvings)), one ? "it" : "them",
+                         whereNear(line.cell_m)),
              true});
     }
     size_t ornaments = 0;

@@ -1,6 +1,10 @@
 // What warnings say of parts thinner than a cell.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <regex>
+
 #include "grammar/pipeline/missing.h"
 #include "modeler/mesh/validate.h"
 #include "tests/pipeline/crisp_model.h"
@@ -53,6 +57,81 @@ TEST(ThinWarnings, NameWhatStaysTornAtTheBoundOfTriangles) {
         240);
     ASSERT_FALSE(wall.warnings.empty());
     EXPECT_NE(wall.warnings[0].text.find("takes too many triangles"), std::string::npos) << wall.warnings[0].text;
+}
+
+/// The largest resolution that warnings name.
+int namedIn(const std::vector<MeshWarning>& warnings) {
+    int largest = 0;
+    for (const MeshWarning& w : warnings) {
+        std::smatch found;
+        if (std::regex_search(w.text, found, std::regex("--resolution ([0-9]+)")))
+            largest = std::max(largest, std::stoi(found[1]));
+    }
+    return largest;
+}
+
+/// Of the mesh as it is written.
+double volumeOf(Warned& of) {
+    Context context{nullptr, 2};
+    const auto written =
+        edited(std::move(of.made.mesh), {}, {of.model.tape, mesh::Surface::Crisp, of.made.grid.cell_m}, context);
+    EXPECT_TRUE(written.ok());
+    return mesh::measure(*written).volume_m3;
+}
+
+/// Cells are halved three times: eight times as large as those that hold a part they are small enough. In cells twice
+/// as large some of it is missing.
+TEST(ThinWarnings, NameTheResolutionWhoseHalvedCellsHoldAPart) {
+    struct Case {
+        const char* text;
+        int resolution;
+        double thick_m3, thin_m3;
+    };
+    const double turned = 4 * 3 * .03;
+    const Case cases[] = {
+        {"start A -> cube size 8m + Rod move (.31m, 6m, .2m) + Rod move (-1.37m, 6m, .67m) + Rod move (2.11m, 6m, "
+         "-1.93m)"
+         " + Rod move (-2.593m, 6m, -1.01m)\nrule Rod -> cube size (.02m, 4m, .02m)\n",
+         20, 512, 4 * .0016},
+        {"start A -> cube size 8m + cube size (4m, 3m, .03m) turn 25deg at +y\n", 20, 512, turned},
+        {"start A -> size (5m, 4m, 5m) T\nrule T -> cylinder - cylinder size (100% - .08m, 120%, 100% - .08m)\n", 8, 0,
+         M_PI * 4 * (2.5 * 2.5 - 2.46 * 2.46)},
+        {"start A -> footprint rect(16, 9) extrude 4m H\nrule H -> cube + flatRoof(.3m, .8m, .05m) at +y\n", 16,
+         16 * 9 * 4.3, .8 * (16 * 9 - 15.9 * 8.9)}};
+    for (const Case& c : cases) {
+        const Warned coarse = warned(c.text, c.resolution);
+        ASSERT_FALSE(coarse.warnings.empty()) << c.text;
+        const int named = namedIn(coarse.warnings);
+        EXPECT_GT(named, c.resolution) << c.text;
+        const auto thinVolume = [&](int resolution) {
+            Warned of = warned(c.text, resolution);
+            return (volumeOf(of) - c.thick_m3) / c.thin_m3;
+        };
+        EXPECT_NEAR(thinVolume(named), 1, .02) << c.text << named;
+        // Samples may lie in it by chance.
+        EXPECT_GT(std::abs(thinVolume(named * 2 / 5) - 1) + std::abs(thinVolume(named * 9 / 20) - 1), .02)
+            << c.text << named;
+    }
+}
+
+TEST(ThinWarnings, NameTheResolutionWithoutHalvingWhereThatIsNotAllowed) {
+    const char* const rod = "start A -> cube size 8m + cube size (.1m, 4m, .1m) at +y\n";
+    const Warned coarse = warned(rod, 24, 0);
+    ASSERT_EQ(coarse.warnings.size(), 1u);
+    EXPECT_NEAR(namedIn(coarse.warnings), 120, 1);
+    EXPECT_TRUE(warned(rod, namedIn(coarse.warnings), 0).warnings.empty());
+}
+
+/// At 128 cells 8 % of the house is missing.
+TEST(ThinWarnings, NameAResolutionThatHoldsWhatTheBoundOfTrianglesEnds) {
+    const char* const shed =
+        "start A -> footprint rect(90, 70) extrude 6m H\n"
+        "rule H -> shellBlock(.3m, .3m) + shedRoof(20deg, overhang: .6m, cover: .3m) at +y\n";
+    const int named = namedIn(warned(shed, 128).warnings);
+    EXPECT_GT(named, 128);
+    EXPECT_LT(named, 300);
+    Warned held = warned(shed, named);
+    EXPECT_NEAR(volumeOf(held) / 4489.5, 1, .002) << named;
 }
 
 }  // namespace
