@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <tuple>
 
 #include "grammar/derive/support.h"
 #include "grammar/pipeline/gaps.h"
@@ -35,6 +37,32 @@ bool isOfCells(FloatCause::Kind kind) {
     return kind == FloatCause::Kind::Touch || kind == FloatCause::Kind::Thin || kind == FloatCause::Kind::Fragment;
 }
 
+/// Floating pieces that one line of a grammar made.
+struct FloatingLine {
+    const Floating* largest = nullptr;
+    size_t pieces = 0;
+    double volume_m3 = 0;
+    bool ofCells = false;  ///< smaller cells would help with all of them
+};
+
+/// Those of most volume first. Pieces that smaller cells would help with are told apart from others.
+std::vector<FloatingLine> floatingLines(const Model& model, const Support& support) {
+    using Key = std::tuple<const syntax::Source*, uint32_t, bool>;
+    std::map<Key, size_t> placeOf;
+    std::vector<FloatingLine> lines;
+    for (const Floating& f : support.floating) {
+        const syntax::SourceSpan& span = model.derivation.tree.shapes[f.shape].span;
+        const uint32_t line = span.source ? span.source->place(span.begin).line : 0;
+        const bool ofCells = f.besideMissing || isOfCells(f.cause.kind);
+        const auto [at, isNew] = placeOf.try_emplace({span.source, line, ofCells}, lines.size());
+        if (isNew) lines.push_back({&f, 0, 0, ofCells});
+        ++lines[at->second].pieces, lines[at->second].volume_m3 += f.piece.volume_m3;
+    }
+    std::stable_sort(lines.begin(), lines.end(),
+                     [](const FloatingLine& a, const FloatingLine& b) { return a.volume_m3 > b.volume_m3; });
+    return lines;
+}
+
 }  // namespace
 
 Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m) {
@@ -51,23 +79,33 @@ Support supportOf(const Model& model, const mesh::Mesh& mesh, float cell_m) {
 
 std::vector<MeshWarning> floatingWarnings(const Model& model, const Support& support, float cell_m) {
     constexpr size_t most = 5;
+    const std::vector<FloatingLine> lines = floatingLines(model, support);
     std::vector<MeshWarning> warnings;
-    for (size_t i = 0; i < std::min(support.floating.size(), most); ++i) {
-        const Floating& f = support.floating[i];
+    size_t left = 0;
+    bool areOfCells = true;
+    for (const FloatingLine& line : lines) {
+        areOfCells = areOfCells && line.ofCells;
+        if (warnings.size() == most) {
+            left += line.pieces;
+            continue;
+        }
+        const Floating& f = *line.largest;
         const Vec3f at = f.piece.bounds.centre();
         const std::string cause = causeText(model, f.cause, cell_m);
-        warnings.push_back({model.derivation.tree.shapes[f.shape].span,
-                            {},
-                            fmt::format("{} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f}){}{}",
-                                        derive::madeBy(model.derivation, f.shape), f.piece.volume_m3, at.x, at.y, at.z,
-                                        cause.empty() ? "" : "; ", cause),
-                            f.besideMissing || isOfCells(f.cause.kind)});
+        std::string text = fmt::format("{} floats: {:.3g} m³ about ({:.2f}, {:.2f}, {:.2f}){}{}",
+                                       derive::madeBy(model.derivation, f.shape), f.piece.volume_m3, at.x, at.y, at.z,
+                                       cause.empty() ? "" : "; ", cause);
+        if (line.pieces > 1)
+            text += fmt::format("; {} more piece{} of this line, {:.3g} m³ in all, float{} too", line.pieces - 1,
+                                line.pieces == 2 ? "" : "s", line.volume_m3 - f.piece.volume_m3,
+                                line.pieces == 2 ? "s" : "");
+        warnings.push_back({model.derivation.tree.shapes[f.shape].span, {}, std::move(text), line.ofCells});
     }
-    if (support.floating.size() > most)
+    if (left > 0)
         warnings.push_back({{},
                             {},
-                            fmt::format("{} more pieces float", support.floating.size() - most),
-                            std::all_of(warnings.begin(), warnings.end(), [](const auto& w) { return w.ofCells; })});
+                            fmt::format("{} more piece{} float{}", left, left == 1 ? "" : "s", left == 1 ? "s" : ""),
+                            areOfCells});
     return warnings;
 }
 

@@ -48,7 +48,8 @@ struct MeshWarning {
     std::string text;         ///< names the shape and figures
     bool ofCells = false;     ///< smaller cells show what is missing, or what holds the piece
 };
-/// A warning for each floating piece of a mesh of such cells, the first few of many.
+/// A warning for the floating pieces of each line of the grammar in a mesh of such cells, with the largest and how many
+/// more there are; those of most volume first, and the first few of many.
 std::vector<MeshWarning> floatingWarnings(const Model& model, const Support& support, float cell_m);
 
 }  // namespace sgm::pipeline

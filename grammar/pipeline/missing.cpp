@@ -17,6 +17,7 @@
 namespace sgm::pipeline {
 namespace {
 
+constexpr size_t mostTold = 5;             ///< lines
 constexpr double leastDetail_cells = 0.5;  ///< of an ornament: narrower ones show in part
 
 /// The parts of one line of a grammar, or the walls or gaps at their faces.
@@ -25,6 +26,7 @@ struct Line {
     size_t parts = 0;
     double thickness_m = 0, cell_m = 0;  ///< of the thinnest
     double missing = 0;                  ///< the sum of their shares
+    double lost_m3 = 0;                  ///< about what the mesh lacks of them
     bool atFaces = false;                ///< of boxes
     int halvings = 0;                    ///< of cells around them that are allowed
     bool isBounded = false;              ///< halving ended at the bound of triangles
@@ -34,6 +36,16 @@ struct Line {
 /// By file, line and kind.
 using Lines = std::map<std::tuple<std::string, uint32_t, lower::ThinPart::Kind>, Line>;
 
+/// About so much of a part, wall or gap is missing, m³.
+double lostVolume(const lower::ThinPart& part) {
+    double volume_m3 = 0;
+    for (const derive::Scope& place : part.places) {
+        const double least_m = minComponent(place.size);
+        volume_m3 += place.size.x * place.size.y * place.size.z * std::min(part.thickness_m / least_m, 1.0);
+    }
+    return part.missing * volume_m3;
+}
+
 Lines linesOf(const Model& model, const std::vector<lower::ThinPart>& missing) {
     Lines lines;
     for (const lower::ThinPart& m : missing) {
@@ -41,13 +53,23 @@ Lines linesOf(const Model& model, const std::vector<lower::ThinPart>& missing) {
         Line& line = lines[{part.file(), part.line(), m.kind}];
         if (line.parts++ == 0) {
             const derive::ShapeId shape = model.lowered->shapeOf[m.part];
-            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, m.face >= 0, m.halvings, false, {}};
+            line = {part.symbol(), 1, m.thickness_m, m.cell_m, 0, 0, m.face >= 0, m.halvings, false, {}};
             if (shape != derive::none) line.span = model.derivation.tree.shapes[shape].span;
         }
         line.thickness_m = std::min(line.thickness_m, m.thickness_m), line.cell_m = std::min(line.cell_m, m.cell_m);
+        line.lost_m3 += lostVolume(m);
         line.missing += m.missing, line.isBounded |= m.isBounded;
     }
     return lines;
+}
+
+/// Those of which most is missing first.
+std::vector<const Lines::value_type*> byLoss(const Lines& lines) {
+    std::vector<const Lines::value_type*> ordered;
+    for (const Lines::value_type& line : lines) ordered.push_back(&line);
+    std::stable_sort(ordered.begin(), ordered.end(),
+                     [](const auto* a, const auto* b) { return a->second.lost_m3 > b->second.lost_m3; });
+    return ordered;
 }
 
 /// An ornament on a line of a grammar whose details are narrower than half a cell.
@@ -111,7 +133,6 @@ Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const 
 
 std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
                                          const std::vector<lower::ThinPart>& missing, const std::string& object) {
-    constexpr size_t most = 5;
     const Lines lines = linesOf(model, missing);
     const HoldingCells holding(grid.cell_m, missing);
     const std::string whose = object.empty() ? "the mesh's cells" : fmt::format("the cells of '{}'", object);
@@ -131,9 +152,10 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
     };
     std::vector<MeshWarning> warnings;
     std::set<std::pair<std::string, uint32_t>> others;
-    for (const auto& [place, line] : lines) {
-        const auto& [file, number, kind] = place;
-        if (warnings.size() == most) {
+    for (const Lines::value_type* const placed : byLoss(lines)) {
+        const Line& line = placed->second;
+        const auto& [file, number, kind] = placed->first;
+        if (warnings.size() == mostTold) {
             others.emplace(file, number);
             continue;
         }
@@ -150,7 +172,7 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
     }
     size_t ornaments = 0;
     for (const auto& [place, line] : fineOrnaments(model.derivation.tree, grid.cell_m)) {
-        if (ornaments++ == most) break;
+        if (ornaments++ == mostTold) break;
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", place.first, place.second),
              fmt::format(
@@ -162,8 +184,11 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
              true});
     }
     if (!others.empty())
-        warnings.push_back(
-            {{}, {}, fmt::format("parts of {} more lines are too thin for these cells", others.size()), true});
+        warnings.push_back({{},
+                            {},
+                            fmt::format("parts of {} more line{} are too thin for these cells", others.size(),
+                                        others.size() == 1 ? "" : "s"),
+                            true});
     return warnings;
 }
 

@@ -14,8 +14,9 @@ namespace sgm::pipeline {
 Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
                                                       Progress* progress);
 
-/// A warning for each line of the grammar with such parts, the first few of many. `object` names the object of `place`
-/// that the model is, whose cells are set by --object-cell; empty for the whole model.
+/// A warning for each line of the grammar with such parts, those that lack most volume first, and the first few of
+/// many. `object` names the object of `place` that the model is, whose cells are set by --object-cell; empty for the
+/// whole model.
 std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,
                                          const std::vector<lower::ThinPart>& missing, const std::string& object = {});
 

@@ -134,5 +134,36 @@ TEST(ThinWarnings, NameAResolutionThatHoldsWhatTheBoundOfTrianglesEnds) {
     EXPECT_NEAR(volumeOf(held) / 4489.5, 1, .002) << named;
 }
 
+TEST(ThinWarnings, TellWhatLacksMostFirst) {
+    std::string text = "start A -> cube size 8m + Rod0 + Rod1 + Rod2 + Rod3 + Rod4 + Rod5 + Plate\n";
+    for (int k = 0; k < 6; ++k)
+        text += "rule Rod" + std::to_string(k) + " -> cube size (.02m, 1m, .02m) move (" + std::to_string(k) +
+                "m - 2.7m, 4.5m, .21m)\n";
+    text += "rule Plate -> cube size (5m, 3m, .02m) move (0m, 5.5m, 1.21m)\n";
+    const Warned all = warned(text, 24, 0);
+    ASSERT_EQ(all.warnings.size(), 6u);
+    EXPECT_EQ(all.warnings[0].place, "test.sgm:9: ") << all.warnings[0].text;
+    for (size_t i = 1; i < 5; ++i) EXPECT_EQ(all.warnings[i].place, "test.sgm:" + std::to_string(2 + i) + ": ");
+    EXPECT_EQ(all.warnings[5].text, "parts of 2 more lines are too thin for these cells");
+}
+
+/// One line that floats in many pieces doesn't hide the others.
+TEST(FloatingWarnings, AreOfLinesNotOfPieces) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\nstart A -> cube size (40, 1, 40) + Balls + cube size .9m move (0, 9m, 0)\n"
+        "rule Balls -> for k in 0..11 { + cube size 1m move (3 * k - 16, 4m, 0) }\n",
+        context);
+    const MeshedModel made = meshed(model, 80);
+    const auto warnings = meshWarnings(model, made, context);
+    ASSERT_TRUE(warnings.ok());
+    ASSERT_EQ(warnings->size(), 2u);
+    EXPECT_NE((*warnings)[0].text.find("floats: 1 m³"), std::string::npos) << (*warnings)[0].text;
+    EXPECT_NE((*warnings)[0].text.find("; 11 more pieces of this line, 11 m³ in all, float too"), std::string::npos)
+        << (*warnings)[0].text;
+    EXPECT_NE((*warnings)[1].text.find("floats: 0.729 m³"), std::string::npos) << (*warnings)[1].text;
+    EXPECT_EQ((*warnings)[1].text.find("more"), std::string::npos) << (*warnings)[1].text;
+}
+
 }  // namespace
 }  // namespace sgm::pipeline
