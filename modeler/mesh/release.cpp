@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 
+#include "modeler/mesh/edge_flips.h"
 #include "modeler/mesh/meeting_point.h"
-#include "modeler/mesh/touched_triangles.h"
 #include "modeler/mesh/wrong_meetings.h"
 
 namespace sgm::mesh {
@@ -46,25 +47,6 @@ private:
         int exchanges = 0, exchangedIn = 0;  ///< how often, and in which round last
         int centredIn = 0;                   ///< in which round, or 0
         Vec3f compared = before;             ///< its place when triangles were compared last
-    };
-    /// Triangles of one piece between which edges were exchanged for other diagonals, as they were before.
-    struct Flips {
-        struct Side {
-            uint32_t triangle;
-            Triangle corners;
-            double before;  ///< as TouchedTriangles::Touched::before
-        };
-        std::vector<Side> sides;
-        bool undone = false;
-
-        /// False for a triangle that others have changed.
-        bool add(const TouchedTriangles::Touched& touched, const FlatMesh& flat) {
-            if (touched.hasFlipped) return false;
-            const uint32_t t = touched.triangle;
-            if (std::none_of(sides.begin(), sides.end(), [&](const Side& side) { return side.triangle == t; }))
-                sides.push_back({t, flat.triangles[t], touched.before});
-            return true;
-        }
     };
     using Touched = TouchedTriangles::Touched;
     static constexpr uint32_t none = TouchedTriangles::none;
@@ -149,7 +131,7 @@ private:
                 const Triangle corners = flat_.triangles[t];
                 bool done = false;
                 for (int i = 0; i < 3; ++i) done |= exchange(corners[i], corners[(i + 1) % 3]);
-                done = done || flipEdges(t);
+                done = done || flipEdges(t) || flipOpposite(t);
                 for (int i = 0; i < 3 && !done; ++i) done |= centre(corners[i]);
                 if (!done) rest.push_back(t);
             }
@@ -245,24 +227,51 @@ private:
         const Triangle corners = flat_.triangles[triangle];
         for (int i = 0; i < 3; ++i)
             for (int k = 1; k < 3; ++k) {
-                Flips flips;
-                if (flipAround(triangle, corners[i], corners[(i + k) % 3], flips)) {
-                    for (const Flips::Side& side : flips.sides) {
-                        Touched& touched = *touched_.of(side.triangle);
-                        touched.hasFlipped = touched.isNew = true;
-                        touched.before = 0;
-                    }
-                    flips_.push_back(std::move(flips));
-                    return true;
-                }
+                EdgeFlips flips;
+                if (flipAround(triangle, corners[i], corners[(i + k) % 3], flips)) return keep(std::move(flips));
                 restore(flips);
             }
         return false;
     }
 
+    /// Exchanges the edge of a folded triangle through which its only vertex that moves went, as a corner of three
+    /// pieces goes to another cell.
+    bool flipOpposite(uint32_t triangle) {
+        const Triangle corners = flat_.triangles[triangle];
+        const int i = moveOf_[corners[0]] != none ? 0 : moveOf_[corners[1]] != none ? 1 : 2;
+        if (moveOf_[corners[i]] == none || isBack(corners[i])) return false;
+        const uint32_t v = corners[i], a = corners[(i + 1) % 3], b = corners[(i + 2) % 3];
+        if (moveOf_[a] != none || moveOf_[b] != none) return false;
+        if (!beyond_) beyond_.emplace(flat_, touched_, moveOf_);
+        const uint32_t s = beyond_->triangleWith(b, a);
+        if (s == none || flat_.keys[s] != flat_.keys[triangle]) return false;
+        if (!touched_.of(s)) touched_.add(s);
+        const int from = placeIn(s, b);
+        const uint32_t w = flat_.triangles[s][(from + 2) % 3];
+        if (flat_.triangles[s][from] != b || flat_.triangles[s][(from + 1) % 3] != a || haveEdge(v, w)) return false;
+        Touched &own = *touched_.of(triangle), &other = *touched_.of(s);
+        EdgeFlips flips;
+        if (dot(own.outward, other.outward) < sameDirection || !flips.add(own, flat_) || !flips.add(other, flat_))
+            return false;
+        setCorner(triangle, (i + 2) % 3, w), setCorner(s, (from + 1) % 3, v);
+        if (!touched_.isFlat(own) && !touched_.isFlat(other)) return keep(std::move(flips));
+        restore(flips);
+        return false;
+    }
+
+    bool keep(EdgeFlips flips) {
+        for (const EdgeFlips::Side& side : flips.sides) {
+            Touched& touched = *touched_.of(side.triangle);
+            touched.hasFlipped = touched.isNew = true;
+            touched.before = 0;
+        }
+        flips_.push_back(std::move(flips));
+        return true;
+    }
+
     /// Takes edges of `pivot` to the third corner of a triangle away, one after the other, and gives `end` the other
     /// diagonals, until the triangle faces outward. False where it never does; some edges may be flipped then.
-    bool flipAround(uint32_t triangle, uint32_t pivot, uint32_t end, Flips& flips) {
+    bool flipAround(uint32_t triangle, uint32_t pivot, uint32_t end, EdgeFlips& flips) {
         for (int step = 0; step < mostFlips; ++step) {
             const int at = placeIn(triangle, pivot), to = placeIn(triangle, end), third = 3 - at - to;
             const uint32_t apex = flat_.triangles[triangle][third];
@@ -286,8 +295,8 @@ private:
         return c.x == vertex ? 0 : c.y == vertex ? 1 : 2;
     }
 
-    void restore(const Flips& flips) {
-        for (const Flips::Side& side : flips.sides) {
+    void restore(const EdgeFlips& flips) {
+        for (const EdgeFlips::Side& side : flips.sides) {
             for (int i = 0; i < 3; ++i)
                 if (flat_.triangles[side.triangle][i] != side.corners[i]) setCorner(side.triangle, i, side.corners[i]);
             touched_.of(side.triangle)->before = side.before;
@@ -341,14 +350,14 @@ private:
         for (const uint32_t t : triangles) some |= revertCorners(flat_.triangles[t]);
         for (bool again = true; again; some |= again) {
             again = false;
-            for (Flips& flips : flips_) {
-                const auto isHeld = [&](const Flips::Side& side) {
+            for (EdgeFlips& flips : flips_) {
+                const auto isHeld = [&](const EdgeFlips::Side& side) {
                     return !isBack(side.corners.x) && !isBack(side.corners.y) && !isBack(side.corners.z) &&
                            std::find(triangles.begin(), triangles.end(), side.triangle) == triangles.end();
                 };
                 if (flips.undone || std::all_of(flips.sides.begin(), flips.sides.end(), isHeld)) continue;
                 restore(flips);
-                for (const Flips::Side& side : flips.sides) {
+                for (const EdgeFlips::Side& side : flips.sides) {
                     revertCorners(side.corners);
                     touched_.of(side.triangle)->isNew = true;
                 }
@@ -377,7 +386,8 @@ private:
     TouchedTriangles touched_;
     std::vector<std::vector<uint64_t>> keysOf_;       ///< by move, ascending
     std::vector<std::vector<uint32_t>> trianglesOf_;  ///< by move
-    std::vector<Flips> flips_;
+    std::vector<EdgeFlips> flips_;
+    std::optional<EdgesBeyond> beyond_;  ///< once asked for
     int round_ = 0;
 };
 

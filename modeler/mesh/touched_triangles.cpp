@@ -1,6 +1,9 @@
 #include "modeler/mesh/touched_triangles.h"
 
 #include <algorithm>
+#include <iterator>
+
+#include "modeler/mesh/one_chunk.h"
 
 namespace sgm::mesh {
 namespace {
@@ -10,22 +13,37 @@ constexpr double foldedShare = 1e-6;
 
 }  // namespace
 
+TouchedTriangles::Touched TouchedTriangles::touch(uint32_t triangle, std::span<const CornerNormal> own) const {
+    Touched touched{triangle, 0, {}, 0};
+    Vec3d ofCreases;
+    for (const CornerNormal& n : own) ofCreases += n.normal.as<double>(), touched.creases |= 1 << n.corner % 3;
+    touched.outward = outwardOf(touched, ofCreases);
+    touched.before = facing(touched);
+    return touched;
+}
+
 void TouchedTriangles::find(const PageVector<uint32_t>& moveOf) {
     touched_.clear();
-    for (size_t i = 0; i < mesh_.chunks.size(); ++i) {
-        const std::vector<CornerNormal>& normals = mesh_.chunks[i].cornerNormals;
-        auto normal = normals.begin();
-        for (uint32_t t = 0; t < flat_.parts[i].triangles; ++t) {
-            const Triangle& corners = flat_.triangles[flat_.parts[i].firstTriangle + t];
-            Touched touched{flat_.parts[i].firstTriangle + t, 0, {}, 0};
-            for (; normal != normals.end() && normal->corner / 3 == t; ++normal)
-                touched.outward += normal->normal.as<double>(), touched.creases |= 1 << normal->corner % 3;
-            if (moveOf[corners.x] == none && moveOf[corners.y] == none && moveOf[corners.z] == none) continue;
-            touched.outward = outwardOf(touched, touched.outward);
-            touched.before = facing(touched);
-            touched_.push_back(touched);
-        }
-    }
+    for (size_t i = 0; i < mesh_.chunks.size(); ++i)
+        visitTriangles(mesh_.chunks[i], [&](uint32_t t, std::span<const CornerNormal> own) {
+            const uint32_t triangle = flat_.parts[i].firstTriangle + t;
+            const Triangle& corners = flat_.triangles[triangle];
+            if (moveOf[corners.x] == none && moveOf[corners.y] == none && moveOf[corners.z] == none) return;
+            touched_.push_back(touch(triangle, own));
+        });
+}
+
+void TouchedTriangles::add(uint32_t triangle) {
+    const auto isBefore = [](uint32_t t, const FlatMesh::Part& p) { return t < p.firstTriangle; };
+    const auto part = std::prev(std::upper_bound(flat_.parts.begin(), flat_.parts.end(), triangle, isBefore));
+    const auto& normals = mesh_.chunks[static_cast<size_t>(part - flat_.parts.begin())].cornerNormals;
+    const uint32_t first = 3 * (triangle - part->firstTriangle);
+    const auto cornerIsBefore = [](const CornerNormal& n, uint32_t corner) { return n.corner < corner; };
+    const auto begin = std::lower_bound(normals.begin(), normals.end(), first, cornerIsBefore),
+               end = std::lower_bound(begin, normals.end(), first + 3, cornerIsBefore);
+    const auto at = std::lower_bound(touched_.begin(), touched_.end(), triangle,
+                                     [](const Touched& touched, uint32_t t) { return touched.triangle < t; });
+    touched_.insert(at, touch(triangle, {begin, end}));
 }
 
 TouchedTriangles::Touched* TouchedTriangles::of(uint32_t triangle) {

@@ -3,6 +3,7 @@
 // have folded over since.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "modeler/mesh/flat_mesh.h"
@@ -26,6 +27,9 @@ public:
     /// Lists the triangles with a vertex that has a number other than `none`; O(n) in all triangles.
     void find(const PageVector<uint32_t>& moveOf);
 
+    /// Lists one more, none of whose vertices moves. O(n) in those listed.
+    void add(uint32_t triangle);
+
     /// Null for a triangle that isn't in the list.
     Touched* of(uint32_t triangle);
     /// Those that face away from where they faced, by more than rounding.
@@ -37,6 +41,7 @@ public:
     auto end() { return touched_.end(); }
 
 private:
+    Touched touch(uint32_t triangle, std::span<const CornerNormal> own) const;
     Vec3d outwardOf(const Touched& touched, Vec3d ofCreases) const;
     double facing(const Touched& touched) const;
     double longestSquare(uint32_t triangle) const;

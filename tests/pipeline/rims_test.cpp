@@ -1,4 +1,5 @@
-// Rims of round buildings: near an edge between two walls, the crease of wall and roof leaves faces of cells.
+// Rims of round buildings and feet of turned ones: creases and corners there leave faces and cells.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -76,6 +77,21 @@ TEST(Rims, OfPrismsHaveNoChamfers) {
     for (const mesh::Chunk& chunk : mesh.chunks)
         for (const Vec3f p : chunk.positions)
             EXPECT_GT(std::hypot(p.x, p.z), apothem_m - 1e-4) << p.x << ' ' << p.y << ' ' << p.z;
+}
+
+/// A corner of the foot may lie beyond an edge of the slab between two cells: 8 triangles of the slab's top, 10 around
+/// it and below, 10 of the tower.
+TEST(Feet, OfTurnedTowersAreExact) {
+    for (const char* const turn : {"10deg", "33deg", "57deg"}) {
+        const std::string turned = fmt::format(" turn {}", turn);
+        for (const int resolution : {24, 37, 41})
+            EXPECT_EQ(usualMesh("start A -> cube size (9, 1, 9)" + turned + " + cube size (4m, 2.6m, 4m)" + turned +
+                                    " move (0, 1.8m, 0)\n",
+                                resolution)
+                          .triangleCount(),
+                      28u)
+                << turn << ' ' << resolution;
+    }
 }
 
 }  // namespace
