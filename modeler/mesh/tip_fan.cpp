@@ -58,15 +58,15 @@ bool crosses(const TipSurface& surface, const TipFan& fan, std::span<const uint3
     return false;
 }
 
-/// The direction along which depth below an apex is measured: the way from the middle of what is cut off, or the mean
-/// of its normals. Along that, no point of a convex tip is higher than its apex, also where all known vertices lie on
-/// one side of it.
-enum class Axis { FromMiddle, MeanNormal };
+/// The direction along which depth below an apex is measured: the way from the middle of what is cut off, the mean of
+/// the normals of what is around that as well, or of its own. Along a mean, no point of a convex tip is higher than its
+/// apex, also where all known vertices lie on one side of it.
+enum class Axis { FromMiddle, MeanAround, MeanNormal };
 
 /// Those that are tried: only a confined vertex may lie far to one side.
 std::span<const Axis> axesAt(const TipSurface& surface, uint32_t vertex) {
-    static constexpr Axis both[] = {Axis::FromMiddle, Axis::MeanNormal};
-    return std::span(both).first(surface.isConfined[vertex] ? 2 : 1);
+    static constexpr Axis all[] = {Axis::FromMiddle, Axis::MeanAround, Axis::MeanNormal};
+    return std::span(all).first(surface.isConfined[vertex] ? 3 : 2);
 }
 
 class FanBuilder {
@@ -174,28 +174,42 @@ private:
         }
     }
 
+    /// The same for all corners of their triangles.
+    template <class Visit>
+    void visitAround(Visit&& visit) const {
+        for (const uint32_t number : triangles_) {
+            const TipTriangle& t = surface_.triangles[number];
+            for (int k = 0; k < 3; ++k) visit(t.corners[k], t.normals[static_cast<size_t>(k)]);
+        }
+    }
+
     /// The direction along which depth is measured, from what is cut off to the apex.
     Vec3d axisOf() const {
         Vec3d middle{}, normal{};
         double count = 0;
         visitCorners([&](uint32_t v, Vec3f n) { middle += at(v), normal += n.as<double>(), ++count; });
         const Vec3d way = apex_ - middle * (1 / count);
+        if (axisKind_ == Axis::MeanAround) visitAround([&](uint32_t, Vec3f n) { normal += n.as<double>(); });
         return normalized(axisKind_ == Axis::FromMiddle ? way : dot(normal, way) < 0 ? normal * -1.0 : normal);
     }
 
-    /// Where the planes of what is cut off meet; those farther than twice `within_m` from the apex don't count, half of
-    /// them at most.
+    /// Where the planes of what is cut off meet, by MeanAround of what is around that as well; those farther than twice
+    /// `within_m` from the apex don't count, half of them at most.
     std::optional<TangentPlanes::Intersection> meetingOf(double within_m) const {
         TangentPlanes planes;
         size_t used = 0, all = 0;
-        visitCorners([&](uint32_t v, Vec3f normal) {
+        const auto add = [&](uint32_t v, Vec3f normal) {
             if (v == top_ || surface_.isConfined[v]) return;
             ++all;
             const Vec3d n = normal.as<double>(), point = at(v) - apex_;
             if (std::abs(dot(n, point)) > 2 * within_m) return;
             planes.add(n, point);
             ++used;
-        });
+        };
+        if (axisKind_ == Axis::MeanAround)
+            visitAround(add);
+        else
+            visitCorners(add);
         if (2 * used < all) return {};
         auto meeting = planes.meeting();
         if (meeting) meeting->point += apex_;

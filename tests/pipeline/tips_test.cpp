@@ -1,4 +1,5 @@
 // Tips that end thinner than a cell: cones, pyramids, steep roofs and hollows.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -86,6 +87,26 @@ TEST(CompleteTips, StayWhereTheirVertexWasConfined) {
     const auto mesh = crisp.edit({.tolerance_m = 1e-3}, context);
     ASSERT_TRUE(mesh.ok());
     EXPECT_LT(distanceTo(*mesh, {0.3997, 1.13959, -0.4819}), 1e-4);
+}
+
+/// The vertices nearest to the apex may all lie on one side of it.
+TEST(CompleteTips, OfConesOf90DegreesAreThereAsARule) {
+    int complete = 0;
+    for (const double height_m : {0.7, 1.0, 1.6})
+        for (const double shift_m : {0.0, 0.037, 0.11, 0.3}) {
+            Context context{nullptr, 2};
+            CrispModel crisp =
+                crispModel(fmt::format("grammar 2\nstart A -> cube size (12m, .5m, 12m) + cone size ({0}m, {1}m, {0}m) "
+                                       "move ({2}m, .25m, {2}m)\n",
+                                       2 * height_m, height_m, shift_m),
+                           120, context);
+            const auto mesh = crisp.edit({}, context);
+            ASSERT_TRUE(mesh.ok());
+            complete += distanceTo(*mesh, {shift_m, 0.25 + height_m / 2, shift_m}) < 0.002;
+            const auto validation = mesh::validate(*mesh);
+            EXPECT_TRUE(validation.ok() && validation->closed && !validation->selfIntersects) << height_m << shift_m;
+        }
+    EXPECT_GE(complete, 11);
 }
 
 /// A roof of four slopes whose apex reaches into cells of which no corner is inside.
