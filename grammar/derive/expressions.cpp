@@ -97,12 +97,28 @@ double drawnBetween(double lo, double hi, const Expr& range, const Place& place,
     return uniform(drawKey(range, place, component), lo, hi);
 }
 
+/// Numbers of different units, which the checker refuses where it knows them, are an error.
+void expectAlike(const Expr& expr, std::span<const Value> args, const Place& place) {
+    if (!expr.asksUnits || !place.builder) return;
+    if (const auto unlike = rules::findUnlikeNumbers(expr, args))
+        place.builder->monitor().fail(Error::Kind::Input, unlike->message, unlike->span, unlike->hint.c_str());
+}
+
 Value drawn(const Expr& expr, const Place& place) {
-    const Value lo = evaluate(expr.args[0], place), hi = evaluate(expr.args[1], place);
+    const Value ends[] = {evaluate(expr.args[0], place), evaluate(expr.args[1], place)};
+    const auto& [lo, hi] = ends;
+    expectAlike(expr, ends, place);
     Value r = rules::interpolate(lo, hi, 0);
     for (uint8_t i = 0; i < r.count; ++i)
         r.n[i] = drawnBetween(lo.n[lo.count > 1 ? i : 0], hi.n[hi.count > 1 ? i : 0], expr, place, i);
     return r;
+}
+
+/// The value along a chain.
+Value onRamp(const Expr& expr, const Place& place) {
+    const Value ends[] = {evaluate(expr.args[0], place), evaluate(expr.args[1], place)};
+    expectAlike(expr, ends, place);
+    return rules::interpolate(ends[0], ends[1], place.ramp);
 }
 
 /// The value that a `choose` draws.
@@ -172,6 +188,7 @@ Value called(const Expr& expr, const Place& place) {
     std::vector<Value> args;
     args.reserve(expr.args.size());
     for (const Expr& arg : expr.args) args.push_back(evaluate(arg, place));
+    expectAlike(expr, args, place);
     if (place.builder)
         if (auto suspect = rules::findArithmeticWarning(expr, args)) {
             const bool divides = fn == Fn::Div || fn == Fn::Rem;
@@ -185,6 +202,7 @@ Value called(const Expr& expr, const Place& place) {
 
 /// Arithmetic on first components, which is what `rules::applyFunction` does to them.
 bool arithmetic(Fn fn, const Expr& expr, const Place& place, double& out) {
+    if (expr.asksUnits && fn != Fn::Equal && fn != Fn::NotEqual) return false;
     const auto arg = [&](size_t i) { return number(expr.args[i], place); };
     switch (fn) {
         case Fn::Add:
@@ -256,7 +274,7 @@ Value evaluate(const Expr& expr, const Place& place) {
         case Kind::Choose:
             return evaluate(chosen(expr, place), place);
         case Kind::Ramp:
-            return rules::interpolate(evaluate(expr.args[0], place), evaluate(expr.args[1], place), place.ramp);
+            return onRamp(expr, place);
         default:
             return {};
     }
@@ -278,10 +296,12 @@ double number(const Expr& expr, const Place& place) {
             }
             break;
         case Kind::Ramp: {
+            if (expr.asksUnits) break;
             const double a = number(expr.args[0], place), b = number(expr.args[1], place);
             return a + (b - a) * place.ramp;
         }
         case Kind::Range:
+            if (expr.asksUnits) break;
             return drawnBetween(number(expr.args[0], place), number(expr.args[1], place), expr, place, 0);
         case Kind::Choose:
             return number(chosen(expr, place), place);

@@ -14,6 +14,22 @@ bool hasZero(const Value& v) {
            std::any_of(v.n.begin(), v.n.begin() + v.count, [](double n) { return n == 0; });
 }
 
+/// What a function of numbers of one unit does, as in "can't add".
+std::string_view verbOf(Fn fn) {
+    switch (fn) {
+        case Fn::Add:
+            return "add";
+        case Fn::Sub:
+            return "subtract";
+        case Fn::Rem:
+            return "divide";
+        case Fn::Lerp:
+            return "choose between";
+        default:
+            return "compare";
+    }
+}
+
 ArithmeticWarning divisionByZero(const Expr& call) {
     const Expr& divisor = call.args[1];
     const bool literal = divisor.kind == Expr::Kind::Constant;
@@ -54,6 +70,34 @@ std::optional<ArithmeticWarning> findArithmeticWarning(const Expr& call, std::sp
         default:
             return {};
     }
+}
+
+ArithmeticWarning unlikeNumbers(const Type& a, const Type& b, std::string_view verb) {
+    const Unit ua = a.like.units[0], ub = b.like.units[0];
+    const bool measures = (ua == Unit::Share && ub == Unit::Metre) || (ua == Unit::Metre && ub == Unit::Share);
+    return {{},
+            fmt::format("can't {} {} and {}", verb, describe(a), describe(b)),
+            measures ? "they meet in 'size', 'move' and the sizes of a 'split'; elsewhere write 'scope.x', "
+                       "'scope.y' or 'scope.z' for 100%"
+                     : ""};
+}
+
+std::optional<ArithmeticWarning> findUnlikeNumbers(const Expr& expr, std::span<const Value> args) {
+    const bool calls = expr.kind == Expr::Kind::Binary || expr.kind == Expr::Kind::Call;
+    const std::string_view verb = expr.kind == Expr::Kind::Range  ? "draw between"
+                                  : expr.kind == Expr::Kind::Ramp ? "go between"
+                                  : calls                         ? verbOf(static_cast<Fn>(expr.index))
+                                                                  : "";
+    const size_t count = static_cast<Fn>(expr.index) == Fn::Lerp && calls ? 2 : args.size();
+    for (size_t i = 1; i < count; ++i)
+        for (size_t j = 0; j < i; ++j) {
+            const Type a = Type::of(args[j]), b = Type::of(args[i]);
+            if (!a.numeric() || !b.numeric() || compatible(a, b)) continue;
+            ArithmeticWarning found = unlikeNumbers(a, b, verb);
+            found.span = syntax::join(expr.args[j].span, expr.args[i].span);
+            return found;
+        }
+    return {};
 }
 
 std::optional<ArithmeticWarning> findDoubtWithin(const Expr& e, std::span<const Value> params) {

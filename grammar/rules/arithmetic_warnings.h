@@ -5,8 +5,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "grammar/rules/grammar.h"
+#include "grammar/rules/type.h"
 
 namespace sgm::rules {
 
@@ -19,6 +21,13 @@ struct ArithmeticWarning {
 /// A division by 0, the square root of a negative number, a share of a colour beyond 0 … 1. `args` are the values of
 /// the arguments of `call`, a Unary, Binary or Call.
 std::optional<ArithmeticWarning> findArithmeticWarning(const Expr& call, std::span<const Value> args);
+
+/// What is said of numbers that can't meet under `verb` ("add"), a share and a length: message and hint, at no place.
+ArithmeticWarning unlikeNumbers(const Type& a, const Type& b, std::string_view verb);
+
+/// Two numbers of different units under an operator, a function, a range or a ramp, which the checker couldn't know:
+/// `args` are the values of its arguments.
+std::optional<ArithmeticWarning> findUnlikeNumbers(const Expr& expr, std::span<const Value> args);
 
 /// The first doubtful call within `e` where the parameters have these values; what they don't decide is left out, and
 /// so is the branch of an `if` that isn't taken.

@@ -107,6 +107,7 @@ Typed checkRange(CheckContext& ctx, Place& place, const Written& e) {
         return fail(ctx, e.span, "the range runs backwards",
                     fmt::format("write '{}..{}'", e.args[1].span.text(), e.args[0].span.text()));
     Typed result = makeApplied(ctx, Expr::Kind::Binary, Fn::Add, e.span, ends);
+    drawn.asksUnits = result.expr.asksUnits;
     result.expr = std::move(drawn);
     for (Typed& end : ends) result.expr.args.push_back(std::move(end.expr));
     return result;
@@ -124,6 +125,8 @@ Typed checkRamp(CheckContext& ctx, Place& place, const Written& e) {
     result.type.known = ends[0].type.known && ends[1].type.known;
     result.type.like = interpolate(ends[0].type.like, ends[1].type.like, 0);
     result.expr.kind = Expr::Kind::Ramp;
+    const Type types[] = {ends[0].type, ends[1].type};
+    result.expr.asksUnits = mayDiffer(types);
     result.expr.span = e.span;
     for (Typed& end : ends) result.expr.args.push_back(std::move(end.expr));
     return result;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "grammar/rules/arithmetic_warnings.h"
@@ -24,7 +25,23 @@ bool isZero(const Expr& e) {
            e.value.units[0] == Unit::None;
 }
 
+/// Whether the function takes numbers of one unit, or plain ones beside them.
+bool takesOneUnit(Fn fn) {
+    return fn == Fn::Add || fn == Fn::Sub || (fn >= Fn::Rem && fn <= Fn::NotEqual) || fn == Fn::Min || fn == Fn::Max ||
+           fn == Fn::Clamp || fn == Fn::Lerp;
+}
+
 }  // namespace
+
+/// Whether units of these may differ while deriving: one isn't known, and another isn't a plain number, which meets
+/// all.
+bool mayDiffer(std::span<const Type> types) {
+    const auto isKnown = [](const Type& t) { return t.known; };
+    const auto isPlain = [](const Type& t) {
+        return t.known && (!t.numeric() || (t.like.count == 1 && t.like.units[0] == Unit::None));
+    };
+    return !std::ranges::all_of(types, isKnown) && std::ranges::count_if(types, std::not_fn(isPlain)) > 1;
+}
 
 Typed fail(CheckContext& ctx, SourceSpan span, std::string message, std::string hint) {
     ctx.diagnostics.error(span, std::move(message), std::move(hint));
@@ -46,12 +63,17 @@ Typed makeApplied(CheckContext& ctx, Expr::Kind kind, Fn fn, SourceSpan span, st
     result.expr.span = span;
     result.expr.index = static_cast<uint32_t>(fn);
     std::vector<Value> samples;
+    std::vector<Type> types;
     for (Typed& arg : args) {
+        types.push_back(arg.type);
         result.type.known = result.type.known && arg.type.known;
         samples.push_back(arg.type.like);
         result.expr.args.push_back(std::move(arg.expr));
     }
-    if (!result.type.known) return {std::move(result.expr), Type::unknown()};
+    if (!result.type.known) {
+        result.expr.asksUnits = takesOneUnit(fn) && mayDiffer(types);
+        return {std::move(result.expr), Type::unknown()};
+    }
     result.type = Type::of(applyFunction(fn, samples));
     if (auto value = fold(result.expr, {})) {
         if (auto suspect = findDoubtWithin(result.expr, {})) {
@@ -124,14 +146,8 @@ bool sameType(CheckContext& ctx, const Typed& a, const Typed& b, std::string_vie
     if (!a.type.numeric()) return say(a, fmt::format("can't {} {}", verb, describe(a.type)));
     if (!b.type.numeric()) return say(b, fmt::format("can't {} {}", verb, describe(b.type)));
     if (compatible(a.type, b.type)) return true;
-    const Unit ua = a.type.like.units[0], ub = b.type.like.units[0];
-    const bool measures = (ua == Unit::Share && ub == Unit::Metre) || (ua == Unit::Metre && ub == Unit::Share);
-    ctx.diagnostics.error(syntax::join(a.expr.span, b.expr.span),
-                          fmt::format("can't {} {} and {}", verb, describe(a.type), describe(b.type)),
-                          measures
-                              ? "they meet in 'size', 'move' and the sizes of a 'split'; elsewhere write 'scope.x', "
-                                "'scope.y' or 'scope.z' for 100%"
-                              : "");
+    ArithmeticWarning unlike = unlikeNumbers(a.type, b.type, verb);
+    ctx.diagnostics.error(syntax::join(a.expr.span, b.expr.span), std::move(unlike.message), std::move(unlike.hint));
     return false;
 }
 

@@ -38,6 +38,7 @@ struct Expr {
         Figure,  ///< index is a Figure: in `check … expect`
     };
     Kind kind = Kind::Constant;
+    bool asksUnits = false;  ///< over numbers of one unit, and a unit is known only while deriving: `with` sets a value
     SourceSpan span;
     Value value;
     uint32_t index = 0;

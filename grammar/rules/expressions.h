@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -30,6 +31,9 @@ Typed failUnknown(CheckContext& ctx, SourceSpan span, const std::string& word, s
                   std::string hint = {});
 /// `kind` over `args`, folded where everything is constant; its type is that of the samples.
 Typed makeApplied(CheckContext& ctx, Expr::Kind kind, Fn fn, SourceSpan span, std::vector<Typed> args);
+/// Whether units of these may differ while deriving: one isn't known, and another isn't a plain number, which meets
+/// all.
+bool mayDiffer(std::span<const Type> types);
 /// Reports two values that can't be added or compared, as `verb` says.
 bool sameType(CheckContext& ctx, const Typed& a, const Typed& b, std::string_view verb);
 /// Reports a value that doesn't fit `want`.

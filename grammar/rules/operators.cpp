@@ -171,7 +171,9 @@ bool checkSignature(CheckContext& ctx, Place& place, const Written& e, const Fun
         case Signature::Alike:
             for (size_t i = 1; i < args.size(); ++i)
                 if (mixShares(place, args[0], args[i])) i = 0;
-            for (size_t i = 0; i < args.size(); ++i) good = good && sameType(ctx, args[0], args[i], "compare");
+            for (size_t i = 1; i < args.size(); ++i)  // each with each: a plain number meets all others
+                for (size_t j = 0; j < i; ++j) good = good && sameType(ctx, args[j], args[i], "compare");
+            good = good && (args.empty() || sameType(ctx, args[0], args[0], "compare"));
             break;
         case Signature::Plain:
             each(Want::Number, 0, args.size());

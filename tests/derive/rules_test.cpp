@@ -197,6 +197,49 @@ TEST(Budgets, DeepTreesDontRecurse) {
     EXPECT_GT(derive::toText(d, false).size(), 9000u);
 }
 
+/// What a rule says whose values `k` and `m` another shape sets by `with`.
+std::string toldOfValues(const std::string& body, const std::string& values = "with k = 1 with m = 2") {
+    const auto d = tryDerive("grammar 2\nstart S -> size (10, 4, 2) A " + values + "\nrule A " + body + "\n");
+    return d.ok() ? "" : d.error().message.substr(0, d.error().message.find(" in rule"));
+}
+
+TEST(Values, UnitsThatDifferAreAnErrorWhereTheyAreKnown) {
+    const auto d = tryDerive(
+        "grammar 2\nstart S -> size (10, 4, 2) A with k = 1\n"
+        "rule A -> let w = (100% - k * 3m) cube size (w, 100%, 100%)\n");
+    ASSERT_FALSE(d.ok());
+    EXPECT_EQ(d.error().kind, Error::Kind::Input);
+    EXPECT_EQ(d.error().message,
+              "test.sgm:3:20: can't subtract a share (%) and a length in rule 'A#1' at S/A, seed 1; they meet in "
+              "'size', 'move' and the sizes of a 'split'; elsewhere write 'scope.x', 'scope.y' or 'scope.z' for 100%");
+    EXPECT_EQ(toldOfValues("-> let w = max(50% - k * 3m, 1.2m) cube size (w, 1m, 1m)"),
+              "test.sgm:3:23: can't subtract a share (%) and a length");
+    EXPECT_EQ(toldOfValues("-> let w = max(k * 50%, 1.2m) cube size (w, 1m, 1m)"),
+              "test.sgm:3:23: can't compare a share (%) and a length");
+    EXPECT_EQ(toldOfValues("-> let w = (k + m) cube size (w, 1m, 1m)", "with k = 50% with m = 2m"),
+              "test.sgm:3:20: can't add a share (%) and a length")
+        << "neither is known before";
+    EXPECT_EQ(toldOfValues("-> let w = clamp(.5, k, m) cube size (w, 1m, 1m)", "with k = 50% with m = 2m"),
+              "test.sgm:3:29: can't compare a share (%) and a length")
+        << "a plain number meets both";
+    EXPECT_EQ(toldOfValues("-> let w = (k * 50%..3m) cube size (w, 1m, 1m)"),
+              "test.sgm:3:20: can't draw between a share (%) and a length");
+    EXPECT_EQ(toldOfValues("repeat 2 -> + cube size (k * 50% ~> 3m)"),
+              "test.sgm:3:33: can't go between a share (%) and a length");
+    EXPECT_EQ(toldOfValues("when k < 3m -> cube", "with k = 50%"),
+              "test.sgm:3:13: can't compare a share (%) and a length");
+    EXPECT_EQ(toldOfValues("-> let w = (k * 30deg + 1m) cube size (w, 1m, 1m)"),
+              "test.sgm:3:20: can't add an angle and a length");
+}
+
+TEST(Values, UnitsThatMeetAreFineWhereTheyAreKnown) {
+    EXPECT_EQ(toldOfValues("-> let w = (100% - k * 30%) cube size (w, 100%, 100%)"), "");
+    EXPECT_EQ(toldOfValues("-> let w = (scope.x - k * 3m) cube size (w, 100%, 100%)"), "");
+    EXPECT_EQ(toldOfValues("-> cube size (100% - k * 3m, 100%, 100%)"), "") << "the share is of the scope";
+    EXPECT_EQ(toldOfValues("when k == 1 -> let w = (max(0, k * 3m) + k) cube size (w, 1m, 1m)"), "")
+        << "a plain number meets all";
+}
+
 TEST(Values, WhatNothingAboveSetsIsAnError) {
     const std::string text = "grammar 1\nstart S -> A with n = 2, A\nrule A -> cube size n\n";
     const auto d = tryDerive(text);

@@ -104,6 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"+ cube size v[6] at +x", "there is no value number 6: the vector's are 0 … 5"},
         Case{"+ cube size min(w, 2m) at +x", ""},
         Case{"+ cube size min(w, a) at +x", "can't compare a length and an angle"},
+        Case{"+ cube overlap max(0, 20%, 1m) at +x", "can't compare a share (%) and a length"},
         Case{"+ cube size lerp(1, 2) at +x", "'lerp' takes 3 arguments, but 2 are given"},
         Case{"+ cube size sin(w) at +x", "'sin' takes an angle (30deg), but this is a length"},
         Case{"+ cube size if(b, 1m, 2) at +x", ""}, Case{"+ cube size i at +x", ""},
