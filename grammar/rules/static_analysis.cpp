@@ -45,6 +45,30 @@ std::optional<double> certain(const std::optional<Expr>& e) {
 }
 bool alwaysHolds(const std::optional<Expr>& e) { return !e || certain(e).value_or(0) != 0; }
 
+/// By part of a split along an axis, the share of the scope that it has whatever the scope; empty where lengths,
+/// repetitions, chance, edges or areas decide.
+std::vector<double> sharesOf(const Parts& split) {
+    if (!split.edges.empty() || split.byArea || split.snap) return {};
+    double fixed = 0, floating = 0;
+    std::vector<double> shares;
+    for (const Parts::Part& part : split.parts) {
+        const auto size = part.repeated.empty() ? fold(part.size, {}) : std::nullopt;
+        if (!size || (!part.floating && size->units[0] != Unit::Share)) return {};
+        (part.floating ? floating : fixed) += size->num();
+        shares.push_back(size->num());
+    }
+    constexpr double rounding = 1e-9;
+    double from = 0;
+    for (size_t i = 0; i < shares.size(); ++i) {
+        if (split.parts[i].floating) shares[i] *= floating > 0 ? std::max(0.0, 1 - fixed) / floating : 0;
+        const double left = std::max(0.0, 1 - from);
+        from += shares[i];
+        shares[i] = std::min(shares[i], left);
+        if (shares[i] < rounding) shares[i] = 0;
+    }
+    return shares;
+}
+
 /// Finds symbols that may end, by least fixpoint: a symbol may end when one of its rules may, a rule when its body can
 /// be had without a symbol that may not.
 class Endings {
@@ -166,10 +190,18 @@ private:
         return true;
     }
 
+    /// Parts vanish where lengths leave nothing for them. One that is a share of the scope whatever its length goes on.
+    bool partsMayEnd(const Parts& parts, bool chain) const {
+        const std::vector<double> shares = sharesOf(parts);
+        for (size_t i = 0; i < shares.size(); ++i)
+            if (shares[i] > 0 && !bodyMayEnd(*parts.parts[i].body, chain)) return false;
+        return true;
+    }
+
     bool elementMayEnd(const Element& e, bool chain) const {
         switch (e.kind) {
             case Element::Kind::Shape:
-                if (e.content.parts()) return true;  // parts shrink, and those without extent vanish
+                if (const Parts* parts = e.content.parts()) return partsMayEnd(*parts, chain);
                 if (e.content.symbol() != none && !ends_[e.content.symbol()]) return false;
                 if (!chain && e.live != none && !ends_[e.live]) return false;  // in a chain it starts none of its own
                 return !e.content.group() || bodyMayEnd(*e.content.group(), chain);

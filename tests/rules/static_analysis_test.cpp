@@ -19,6 +19,23 @@ TEST(Endless, RulesAreNamed) {
     EXPECT_EQ(judged("rule A -> cube for d in axes { + A }\n"), "rule 'A#1' never ends: every 'A' makes another 'A'\n");
 }
 
+TEST(Endless, SharesOfASplitAreNamed) {
+    const std::string never = "rule 'A#1' never ends: every 'A' makes another 'A'\n";
+    EXPECT_EQ(judged("rule A -> split x { 50%: A | ~1: cube }\n"), never);
+    EXPECT_EQ(judged("rule A -> split x { ~1: cube | ~2: A }\n"), never);
+    EXPECT_EQ(judged("rule A -> split x { 20%: cube | 120%: A }\n"), never) << "cut off at 80 %";
+    EXPECT_EQ(judged("rule A -> split x { 50%: B | ~1: cube }\nrule B -> split y { ~1: A | ~1: cube }\n"),
+              "rule 'A#1' never ends: 'A' (A#1) -> 'B' (B#1) -> 'A'\n");
+    EXPECT_EQ(judged("rule A -> split x { 3m: cube | ~1: A }\n"), "") << "3 m are left at last, or less";
+    EXPECT_EQ(judged("rule A -> split x { 50%: A | 1m: cube | ~1: cube }\n"), "") << "lengths are left alone";
+    EXPECT_EQ(judged("rule A -> split x { 100%: cube | 50%: A }\n"), "") << "no room for it";
+    EXPECT_EQ(judged("rule A -> split x { 0%: A | ~1: cube }\n"), "");
+    EXPECT_EQ(judged("rule A -> split x { { ~2m: cube }* | 3m: A }\n"), "");
+    EXPECT_EQ(judged("rule A when scope.x > 1 -> split x { 50%: A | ~1: cube }\n"), "");
+    EXPECT_EQ(judged("rule A -> split x { 50%: choose { 1: A | 1: cube } | ~1: cube }\n"), "");
+    EXPECT_EQ(judged("rule A -> split x { 50%: A | ~1: cube }\nrule A -> cube\n"), "") << "drawn by weight";
+}
+
 TEST(WaitingCycles, AreToldOnce) {
     EXPECT_EQ(judged("rule A -> cube : B, cube : C\nrule B after C -> cube\nrule C after B -> cube\n"),
               "warning: 'B' waits for 'C', and 'C' waits for 'B': nothing decides which comes first\n");
