@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "grammar/derive/parts_context.h"
 #include "grammar/operations/operations.h"
+#include "grammar/rules/lookup.h"
 #include "grammar/rules/operation_checker.h"
 #include "modeler/core/random.h"
 
@@ -50,9 +52,22 @@ std::shared_ptr<Parts> checkCopies(OperationChecker& checker, const syntax::Attr
     return out;
 }
 
+/// `grammar 1` takes a radius below 0, for copies that look inward.
+bool refusesBelowZero(const rules::Grammar& grammar, syntax::SourceSpan span) {
+    return rules::versionOf(grammar, span) >= 2;
+}
+std::string belowZero(double radius_m) {
+    return fmt::format("'radius' is {:.6g}m, but must be no less than 0", radius_m);
+}
+constexpr const char* turnBodies = "copies that look inward say 'turn 180deg' in their body";
+
 std::shared_ptr<Parts> checkAround(OperationChecker& checker, const syntax::Attribute& written) {
     auto out = checkCopies(checker, written, true);
-    if (written.args.size() > 1) out->args.push_back(checker.expression(written.args[1], Want::Length, "'radius'"));
+    if (written.args.size() < 2) return out;
+    out->args.push_back(checker.expression(written.args[1], Want::Length, "'radius'"));
+    if (const auto value = checker.atDefaults(out->args.back());
+        value && value->num() < 0 && refusesBelowZero(checker.grammar(), written.span))
+        checker.error(written.args[1].span, belowZero(value->num()), turnBodies);
     return out;
 }
 
@@ -85,6 +100,8 @@ bool runAround(PartsContext& context, const Parts& copies) {
     if (copies.args.size() < 2) return true;
     const double count = countOf(context, copies),
                  radius_m = context.evaluate(copies.args[1], hashText("radius")).num();
+    if (radius_m < 0 && refusesBelowZero(context.grammar(), copies.span))
+        return context.fail(belowZero(radius_m) + ": " + turnBodies, copies.args[1].span);
     for (double i = 1; i <= count; ++i) {
         context.count(copies.parts[0].local, i);
         Scope scope = context.scope();

@@ -174,7 +174,11 @@ Result<Value> parseValue(const Param& param, const std::string& text) {
         return Error{Error::Kind::Input, fmt::format("'{}' is true or false, not '{}'", param.name, text)};
     if (param.value.kind == Value::Kind::Color)
         return Error{Error::Kind::Input, fmt::format("'{}' is a colour such as #c8b090, not '{}'", param.name, text)};
-    const std::string why = diagnostics.all().empty() ? "it is no value" : diagnostics.all()[0].message;
+    std::string why = "it is no value";
+    if (!diagnostics.all().empty()) {
+        const syntax::Diagnostic& first = diagnostics.all()[0];
+        why = first.hint.empty() ? first.message : first.message + "; " + first.hint;
+    }
     return Error{Error::Kind::Input, fmt::format("'{}' can't be '{}': {}", param.name, text, why)};
 }
 

@@ -118,7 +118,7 @@ bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_vi
         hint = what.find("' of '") != what.npos  // of a roof, where the angle is a pitch that it doesn't have
                    ? "write a length, such as '.6m'"
                    : fmt::format("write a length such as '{:.12g}m'", written->number);
-    if (isSize && value.type.like.kind == Value::Kind::Vector && value.type.like.count > 3)
+    if ((isSize || want == Want::Offset) && value.type.like.kind == Value::Kind::Vector && value.type.like.count > 3)
         hint = "write x, y and z; the decimal point is '.', as in '3.5'";
     if (want == Want::Size && value.type.like.kind == Value::Kind::Vector && value.type.like.count == 2)
         hint = "write all three, x, y and z, as in '(10, 1, 3)'";

@@ -8,6 +8,8 @@
 #include "grammar/rules/evaluate.h"
 #include "grammar/rules/expressions.h"
 #include "grammar/rules/make.h"
+#include "grammar/rules/plans.h"
+#include "grammar/rules/solid_arguments.h"
 #include "grammar/rules/words.h"
 #include "modeler/field/plan_parameters.h"
 #include "modeler/plan/edge_words.h"
@@ -162,34 +164,9 @@ void warnOfThinEaves(CheckContext& ctx, const Solid& solid) {
             "give them a board, such as 'fascia: .2m'");
 }
 
-/// Two arguments without names, an angle where a length belongs and the other way round: an error of both.
-bool refuseExchanged(CheckContext& ctx, const Written& e, const field::Primitive& row) {
-    const size_t count = std::min(e.args.size(), row.parameters.size());
-    const auto stands = [&](size_t i, ParameterKind kind, bool isAngle) {
-        const Written& arg = e.args[i];
-        return row.parameters[i].kind == kind && (i >= e.argNames.size() || e.argNames[i].empty()) &&
-               arg.kind == Written::Kind::Number && !arg.unit.empty() && arg.unit != "%" &&
-               (arg.unit == "deg") == isAngle;
-    };
-    for (size_t angle = 0; angle < count; ++angle)
-        for (size_t length = 0; length < count; ++length) {
-            if (!stands(angle, ParameterKind::Angle, false) || !stands(length, ParameterKind::Length, true)) continue;
-            std::vector<std::string_view> texts;
-            for (const Written& arg : e.args) texts.push_back(arg.span.text());
-            std::swap(texts[angle], texts[length]);
-            ctx.diagnostics.error(
-                e.span,
-                fmt::format("'{}' and '{}' of '{}' are exchanged", row.parameters[std::min(angle, length)].name,
-                            row.parameters[std::max(angle, length)].name, row.name),
-                fmt::format("write '{}({})'", row.name, fmt::join(texts, ", ")));
-            return true;
-        }
-    return false;
-}
-
 Solid checkPrimitive(CheckContext& ctx, Place& place, const Written& e, const field::Primitive& row) {
     Solid solid = solidOfRow(e.span, row);
-    if (refuseExchanged(ctx, e, row)) return solid;
+    if (refuseExchanged(ctx, e, row) || refuseUnnamedBehindNamed(ctx, e, row)) return solid;
     std::vector<bool> given(row.parameters.size(), false);
     for (size_t i = 0; i < e.args.size(); ++i) {
         size_t index = i;
@@ -306,6 +283,9 @@ Solid checkNamedSolid(CheckContext& ctx, Place& place, const Written& e) {
 std::string hintForSolid(CheckContext& ctx, std::string_view word) {
     for (const auto& [theirs, hint] : elsewhere)
         if (theirs == word) return std::string(hint);
+    if (const PlanRow* plan = findPlan(word))
+        return fmt::format("'{}' is a plan for 'footprint', which a solid stands on: write '{} extrude 3m block'", word,
+                           plan->example);
     const std::string file = ctx.files.declaring(std::string(word));
     if (!file.empty()) return fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
     std::vector<std::string> known = symbolNames(ctx, true);

@@ -121,6 +121,11 @@ void readArguments(Cursor& cursor, const Operation& row, Attribute& attribute) {
         }
         if (!fits(cursor, argument.type)) {
             if (argument.optional) continue;
+            if (row.traits.namesValue && isReserved(cursor.peekText())) {
+                cursor.fail(cursor.found() + " is a word of the language and can't name a value",
+                            "give the value another name");
+                return;
+            }
             cursor.fail(
                 "'" + plain(row.name) + "' needs " + plain(describe(argument.type)) + ", found " + cursor.found(),
                 "as in '" + plain(row.example) + "'");

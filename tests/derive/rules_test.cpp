@@ -240,6 +240,14 @@ TEST(Values, UnitsThatMeetAreFineWhereTheyAreKnown) {
         << "a plain number meets all";
 }
 
+TEST(Values, ARadiusBelowZeroIsAnErrorWhereItIsKnown) {
+    EXPECT_EQ(
+        toldOfValues("-> around 3 radius k { cube size 1 }", "with k = -2m"),
+        "test.sgm:3:27: 'radius' is -2m, but must be no less than 0: copies that look inward say 'turn 180deg' in "
+        "their body");
+    EXPECT_EQ(toldOfValues("-> around 3 radius k { cube size 1 }", "with k = 0m"), "");
+}
+
 TEST(Values, WhatNothingAboveSetsIsAnError) {
     const std::string text = "grammar 1\nstart S -> A with n = 2, A\nrule A -> cube size n\n";
     const auto d = tryDerive(text);

@@ -70,6 +70,8 @@ TEST_F(Params, SayWhyAValueIsRefused) {
         "'count' is a whole number, not 2.5: with a point in its default or range (0..1.0) it would be a real one");
     EXPECT_EQ(set(2, "30deg"), "'width' is a length, but this is an angle");
     EXPECT_EQ(set(3, "30"), "an angle needs its unit: write '30deg'");
+    EXPECT_EQ(set(3, "52,5deg"),
+              "'tilt' can't be '52,5deg': '52,5deg' is no number; a decimal point is '.': write '52.5deg'");
     EXPECT_EQ(set(4, "(1, 2)"), "'size' is a vector of 3, but this is a vector of 2");
     EXPECT_EQ(set(5, "oval"), "'shape' is one of round, square, not 'oval'");
     EXPECT_EQ(set(6, "red"), "'paint' is a colour such as #c8b090, not 'red'");
