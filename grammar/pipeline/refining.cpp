@@ -4,6 +4,7 @@
 #include <array>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -12,6 +13,7 @@
 #include "grammar/lower/thin_cells.h"
 #include "grammar/lower/torn_eaves.h"
 #include "grammar/lower/torn_rims.h"
+#include "grammar/pipeline/triangles_of_cells.h"
 #include "modeler/mesh/refine.h"
 #include "modeler/mesh/region.h"
 
@@ -19,11 +21,12 @@ namespace sgm::pipeline {
 namespace {
 
 constexpr size_t mostGrowth = 4, leastBound = 1000000;  ///< of triangles
+constexpr size_t tornDivisor = 4;                       ///< of that bound, for how much more what is torn may use
 constexpr double cellsPerTriangle = 16;                 ///< at most looked at, of the triangles that the mesh may have
 constexpr int mostHalvingsOfCells = 3;
 constexpr double leastMissingEaves = 0.5;  ///< share of eaves that the mesh is said to lack
 
-/// Cells to be halved, by how often.
+/// Cells that are halved, by how often.
 using HalvedCells = std::array<mesh::CellSet, mostHalvingsOfCells + 1>;
 
 class ThinPartRefiner {
@@ -43,6 +46,7 @@ public:
         auto missing = hold(lower::findMissingParts);
         if (!missing.ok()) return missing;
         const double seconds = halvingSeconds_;
+        mostTriangles_ = std::max(mostTriangles_, mesh_.triangleCount()) + mostTriangles_ / tornDivisor;
         std::vector<lower::ThinPart> torn;
         for (Finder* const finder : {lower::findTornParts, lower::findTornRims}) {
             auto left = hold(*finder);
@@ -76,8 +80,13 @@ private:
     using Finder = decltype(lower::findMissingParts);
     /// Around a part, at its eaves, or beside a face.
     using Place = std::tuple<OriginId, bool, int>;
-    /// By how often cells are halved for it.
-    using PlacesByHalvings = std::array<std::vector<Place>, mostHalvingsOfCells + 1>;
+    /// What is to be halved for a part.
+    struct Request {
+        Place place;
+        std::vector<Vec3i> cells;
+    };
+    /// By how often cells are to be halved.
+    using RequestsByHalvings = std::array<std::vector<Request>, mostHalvingsOfCells + 1>;
     static Place placeOf(const lower::ThinPart& part) {
         return {part.part, part.kind == lower::ThinPart::Kind::Eaves, part.face};
     }
@@ -108,47 +117,56 @@ private:
         for (;;) {
             auto found = find(finder, before ? &*before : nullptr);
             if (!found.ok()) return found;
-            PlacesByHalvings asked;
-            const HalvedCells cells = cellsAround(*found, asked);
+            RequestsByHalvings asked = cellsAround(*found);
             bool isRefined = false;
             for (int halvings = 1; halvings <= most_; ++halvings)
-                if (const auto h = static_cast<size_t>(halvings); !cells[h].empty())
-                    if (const Status s = refine(cells[h], halvings, asked[h], isRefined); !s.ok()) return s.error();
+                if (const Status s =
+                        refine(std::move(asked[static_cast<size_t>(halvings)]), halvings, mostTriangles_, isRefined);
+                    !s.ok())
+                    return s.error();
             if (!isRefined) return found;
             before = std::move(*found);
         }
     }
 
-    /// Leaves what the cells are halved for.
-    HalvedCells cellsAround(const std::vector<lower::ThinPart>& missing, PlacesByHalvings& asked) {
-        HalvedCells cells;
-        double cellCount = 0;
-        const auto halve = [&](const lower::ThinPart& part, int halvings) {
-            const double count = lower::countCellsAround(part, grid_);
-            if (cellCount + count > cellsPerTriangle * static_cast<double>(mostTriangles_)) {
-                bounded_.insert(placeOf(part));
-                return;
-            }
-            cellCount += count;
-            mesh::CellSet around;
-            lower::addCellsAround(part, grid_, around);
-            int& tried = tried_[placeOf(part)];
-            tried = std::max(halvings, halvingsIn(around));
-            asked[static_cast<size_t>(tried)].push_back(placeOf(part));
-            for (const Vec3i cell : around.list()) cells[static_cast<size_t>(tried)].insert(cell);
+    /// Those with fewest cells first, where not all can be looked at.
+    RequestsByHalvings cellsAround(const std::vector<lower::ThinPart>& missing) {
+        struct Wish {
+            const lower::ThinPart* part;
+            int halvings;
+            double cells;
         };
-        std::vector<const lower::ThinPart*> thinner;
+        std::vector<Wish> wishes, thinner;
+        double cellCount = 0;
         for (const lower::ThinPart& part : missing) {
             const int before = tried_[placeOf(part)];
             const int halvings = std::max(before + 1, lower::halvingsFor(part, grid_.cell_m));
-            if (halvings <= most_)
-                halve(part, halvings);
-            else if (before < most_)
-                thinner.push_back(&part);
+            if (before >= most_) continue;
+            const Wish wish{&part, std::min(halvings, most_), lower::countCellsAround(part, grid_)};
+            (halvings <= most_ ? wishes : thinner).push_back(wish);
+            cellCount += wish.cells;
         }
         // Smaller cells hold more of what they don't hold yet; they come last, for a mesh may not grow so far.
-        for (const lower::ThinPart* part : thinner) halve(*part, most_);
-        return cells;
+        wishes.insert(wishes.end(), thinner.begin(), thinner.end());
+        const double most = cellsPerTriangle * static_cast<double>(mostTriangles_);
+        if (cellCount > most)
+            std::stable_sort(wishes.begin(), wishes.end(),
+                             [](const Wish& a, const Wish& b) { return a.cells < b.cells; });
+        RequestsByHalvings asked;
+        cellCount = 0;
+        for (const Wish& wish : wishes) {
+            if (cellCount + wish.cells > most) {
+                bounded_.insert(placeOf(*wish.part));
+                continue;
+            }
+            cellCount += wish.cells;
+            mesh::CellSet around;
+            lower::addCellsAround(*wish.part, grid_, around);
+            int& tried = tried_[placeOf(*wish.part)];
+            tried = std::max(wish.halvings, halvingsIn(around));
+            asked[static_cast<size_t>(tried)].push_back({placeOf(*wish.part), around.list()});
+        }
+        return asked;
     }
 
     /// How often some of the cells were halved at most.
@@ -161,19 +179,82 @@ private:
         return 0;
     }
 
-    /// Halves cells so often. Where they come to take others with them that were halved more often, and hold there what
-    /// larger ones don't, all of them are halved as often as these.
-    Status refine(const mesh::CellSet& cells, int halvings, const std::vector<Place>& asked, bool& isRefined) {
+    static mesh::CellSet allOf(std::span<const Request> asked) {
+        mesh::CellSet all;
+        for (const Request& one : asked)
+            for (const Vec3i cell : one.cells) all.insert(cell);
+        return all;
+    }
+
+    /// About how many triangles more the mesh has where each part's cells are halved that often, without those of parts
+    /// before it. Nothing where all fit into the room at any rate.
+    std::vector<size_t> guessGrowth(std::span<const Request> asked, int halvings, size_t room) const {
+        const mesh::CellSet all = allOf(asked);
+        const size_t after = trianglesOfHalved(halvings);
+        if (all.size() * after <= room) return {};
+        std::vector<size_t> growth(asked.size());
+        const std::vector<uint32_t> counts = countTriangles(mesh_, grid_, all);
+        size_t next = 0;  // of all cells, which come in the order of the parts
+        for (size_t i = 0; i < asked.size(); ++i)
+            for (const Vec3i cell : asked[i].cells) {
+                if (next == all.size() || all.list()[next] != cell) continue;
+                if (counts[next++] > 0) growth[i] += after;
+            }
+        return growth;
+    }
+
+    /// Halves cells so often. Where the mesh would have too many triangles, those of parts that take most of them are
+    /// halved less often.
+    Status refine(std::vector<Request> asked, int halvings, size_t mostTriangles, bool& isRefined) {
+        const size_t room = mostTriangles - std::min(mostTriangles, mesh_.triangleCount());
+        const std::vector<size_t> growth = guessGrowth(asked, halvings, room);
+        const size_t sum = std::accumulate(growth.begin(), growth.end(), size_t{0});
+        if (sum <= room) return refineAll(asked, halvings, mostTriangles, isRefined);
+        std::vector<size_t> order(asked.size());
+        std::iota(order.begin(), order.end(), size_t{0});
+        std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return growth[a] < growth[b]; });
+        std::vector<Request> kept, less;
+        size_t growthOfKept = 0;
+        for (const size_t i : order) {
+            // What is halved less often may use up to half of the room.
+            const size_t left = sum - growthOfKept - growth[i], rest = std::min(left / 4, room / 2);
+            const bool isKept = less.empty() && growthOfKept + growth[i] + (halvings > 1 ? rest : 0) <= room;
+            if (isKept) growthOfKept += growth[i];
+            if (!isKept) bounded_.insert(asked[i].place);
+            (isKept || halvings == 1 ? kept : less).push_back(std::move(asked[i]));
+        }
+        // Where cells of both meet, those that are halved more often come last and stay.
+        if (!less.empty())
+            if (const Status s = refine(std::move(less), halvings - 1, mostTriangles - growthOfKept, isRefined);
+                !s.ok())
+                return s;
+        return refineAll(kept, halvings, mostTriangles, isRefined);
+    }
+
+    /// Halves cells so often, the first alone where that takes too many triangles when they are halved once. Where they
+    /// come to take others with them that were halved more often, and hold there what larger ones don't, all of them
+    /// are halved as often as these.
+    Status refineAll(std::span<const Request> asked, int halvings, size_t mostTriangles, bool& isRefined) {
+        const mesh::CellSet cells = allOf(asked);
+        if (cells.empty()) return Done{};
         const Stopwatch watch;
+        const auto bound = [&] {
+            for (const Request& one : asked) bounded_.insert(one.place);
+        };
         for (;;) {
-            auto refined = mesh::refineCells(mesh_, model_.tape, grid_, cells,
-                                             {halvings, mostTriangles_, context_.threads}, context_.progress);
+            const size_t most = halvings > 1 ? ~size_t{0} : mostTriangles;
+            auto refined = mesh::refineCells(mesh_, model_.tape, grid_, cells, {halvings, most, context_.threads},
+                                             context_.progress);
             if (!refined.ok()) return refined.error();
-            if (refined->isBounded) bounded_.insert(asked.begin(), asked.end());
+            if (refined->isBounded) bound();
             if (!refined->made) break;
             if (const int finest = halvingsIn(refined->made->cells); finest > halvings) {
                 halvings = finest;
-                continue;
+                const size_t room = mostTriangles - std::min(mostTriangles, mesh_.triangleCount());
+                const std::vector<size_t> growth = guessGrowth(asked, halvings, room);
+                if (std::accumulate(growth.begin(), growth.end(), size_t{0}) <= room) continue;
+                bound();
+                break;
             }
             mesh_ = std::move(refined->made->mesh);
             for (const Vec3i cell : refined->made->cells.list()) halved_[static_cast<size_t>(halvings)].insert(cell);
@@ -189,7 +270,7 @@ private:
     const mesh::Grid& grid_;
     const int most_;
     Context& context_;
-    const size_t mostTriangles_;
+    size_t mostTriangles_;
     std::map<Place, int> tried_;  ///< halvings of the cells there
     std::set<Place> bounded_;     ///< where halving ended at the bound of triangles
     HalvedCells halved_;
