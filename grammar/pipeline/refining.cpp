@@ -187,7 +187,7 @@ private:
     }
 
     /// About how many triangles more the mesh has where each part's cells are halved that often, without those of parts
-    /// before it. Nothing where all fit into the room at any rate.
+    /// before it. Nothing where all stay within the bound at any rate.
     std::vector<size_t> guessGrowth(std::span<const Request> asked, int halvings, size_t room) const {
         const mesh::CellSet all = allOf(asked);
         const size_t after = trianglesOfHalved(halvings);
@@ -216,7 +216,7 @@ private:
         std::vector<Request> kept, less;
         size_t growthOfKept = 0;
         for (const size_t i : order) {
-            // What is halved less often may use up to half of the room.
+            // What is halved less often may take up to half of the triangles that the bound leaves.
             const size_t left = sum - growthOfKept - growth[i], rest = std::min(left / 4, room / 2);
             const bool isKept = less.empty() && growthOfKept + growth[i] + (halvings > 1 ? rest : 0) <= room;
             if (isKept) growthOfKept += growth[i];

@@ -2,6 +2,7 @@
 // Enters: a mesh. Leaves: its one chunk, to be changed.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "modeler/mesh/mesh.h"
@@ -29,6 +30,13 @@ void visitTriangles(const Chunk& chunk, Visit&& visit) {
         visit(t, all.subspan(first, end - first));
         first = end;
     }
+}
+
+/// The corner normals of one triangle of a chunk. O(log n).
+inline std::span<const CornerNormal> cornerNormalsOf(const Chunk& chunk, uint32_t triangle) {
+    const auto isBefore = [](const CornerNormal& n, uint32_t corner) { return n.corner < corner; };
+    const auto begin = std::lower_bound(chunk.cornerNormals.begin(), chunk.cornerNormals.end(), 3 * triangle, isBefore);
+    return {begin, std::lower_bound(begin, chunk.cornerNormals.end(), 3 * triangle + 3, isBefore)};
 }
 
 }  // namespace sgm::mesh

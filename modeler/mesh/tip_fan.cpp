@@ -81,7 +81,7 @@ public:
         double within_m = apexSlack * surface_.cell_m;
         for (int round = 0; round < rounds; ++round) {
             if (isTooNear() || !gather(cut * depthOf(top_))) {
-                reachesTop_ = round == 0;
+                reachesApex_ = round == 0;
                 return {};
             }
             const auto meeting = meetingOf(within_m);
@@ -98,8 +98,8 @@ public:
         return made;
     }
 
-    /// Whether what is cut off first of all leaves room below the first guess of the apex.
-    bool leavesRoom() {
+    /// Whether what is cut off first of all ends below the first guess of the apex.
+    bool endsBelowApex() {
         begin();
         return !isTooNear() && gather(nearestCut * depthOf(top_));
     }
@@ -109,11 +109,11 @@ public:
 
     /// Whether the last fan wasn't made since what is cut off below the first guess of the apex comes too near to that
     /// or is too large: deeper cuts have it as well.
-    bool reachesTop() const { return reachesTop_; }
+    bool reachesApex() const { return reachesApex_; }
 
 private:
     void begin() {
-        top_ = vertex_, apex_ = guess_, lacksConfined_ = reachesTop_ = false;
+        top_ = vertex_, apex_ = guess_, lacksConfined_ = reachesApex_ = false;
         cutOff_.clear(surface_.positions.size()), cutOff_.insert(top_);
         triangles_.assign(around(top_).begin(), around(top_).end());
         axis_ = axisOf();
@@ -303,7 +303,7 @@ private:
     const Axis axisKind_;
     uint32_t top_ = 0;
     Vec3d apex_, axis_;
-    bool lacksConfined_ = false, reachesTop_ = false;
+    bool lacksConfined_ = false, reachesApex_ = false;
     MarkedNumbers& cutOff_;            ///< vertices
     std::vector<uint32_t> triangles_;  ///< with such vertices, ascending
 };
@@ -331,7 +331,7 @@ std::vector<float> valuesAt(const TipSurface& surface, std::span<const Vec3f> po
 bool mayBeTip(const TipSurface& surface, uint32_t vertex, Vec3d apex) {
     const std::span<const Axis> axes = axesAt(surface, vertex);
     return std::any_of(axes.begin(), axes.end(),
-                       [&](Axis axis) { return FanBuilder(surface, vertex, apex, axis).leavesRoom(); });
+                       [&](Axis axis) { return FanBuilder(surface, vertex, apex, axis).endsBelowApex(); });
 }
 
 std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d apex) {
@@ -345,7 +345,7 @@ std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d ap
                 if (!isOpen[i]) continue;
                 auto fan = builder.fan(cuts[i], takesConfined);
                 isOpen[i] = builder.lacksConfined();
-                if (builder.reachesTop()) std::fill(isOpen.begin() + static_cast<ptrdiff_t>(i), isOpen.end(), false);
+                if (builder.reachesApex()) std::fill(isOpen.begin() + static_cast<ptrdiff_t>(i), isOpen.end(), false);
                 if (!fan) continue;
                 if (fan->error_m < onSurface * surface.cell_m) return fan;
                 if (!first) first = std::move(fan);

@@ -115,11 +115,9 @@ private:
                        chunk.origins[t],
                        chunk.labels.empty() ? 0 : chunk.labels[t],
                        0};
-        const auto isBefore = [](const CornerNormal& n, uint32_t corner) { return n.corner < corner; };
-        for (auto n = std::lower_bound(chunk.cornerNormals.begin(), chunk.cornerNormals.end(), 3 * t, isBefore);
-             n != chunk.cornerNormals.end() && n->corner / 3 == t; ++n) {
-            at.normals[n->corner % 3] = n->normal;
-            at.ownNormals |= static_cast<uint8_t>(1u << n->corner % 3);
+        for (const CornerNormal& n : cornerNormalsOf(chunk, t)) {
+            at.normals[n.corner % 3] = n.normal;
+            at.ownNormals |= static_cast<uint8_t>(1u << n.corner % 3);
         }
         return at;
     }

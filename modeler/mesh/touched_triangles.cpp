@@ -36,14 +36,10 @@ void TouchedTriangles::find(const PageVector<uint32_t>& moveOf) {
 void TouchedTriangles::add(uint32_t triangle) {
     const auto isBefore = [](uint32_t t, const FlatMesh::Part& p) { return t < p.firstTriangle; };
     const auto part = std::prev(std::upper_bound(flat_.parts.begin(), flat_.parts.end(), triangle, isBefore));
-    const auto& normals = mesh_.chunks[static_cast<size_t>(part - flat_.parts.begin())].cornerNormals;
-    const uint32_t first = 3 * (triangle - part->firstTriangle);
-    const auto cornerIsBefore = [](const CornerNormal& n, uint32_t corner) { return n.corner < corner; };
-    const auto begin = std::lower_bound(normals.begin(), normals.end(), first, cornerIsBefore),
-               end = std::lower_bound(begin, normals.end(), first + 3, cornerIsBefore);
+    const Chunk& chunk = mesh_.chunks[static_cast<size_t>(part - flat_.parts.begin())];
     const auto at = std::lower_bound(touched_.begin(), touched_.end(), triangle,
                                      [](const Touched& touched, uint32_t t) { return touched.triangle < t; });
-    touched_.insert(at, touch(triangle, {begin, end}));
+    touched_.insert(at, touch(triangle, cornerNormalsOf(chunk, triangle - part->firstTriangle)));
 }
 
 TouchedTriangles::Touched* TouchedTriangles::of(uint32_t triangle) {
