@@ -18,14 +18,14 @@ Box3d boxOf(const Scope& s, double share) {
     return {s.centre - r, s.centre + r};
 }
 
-namespace {
-
 double standsOut_m(const SolidValue& solid, double height_m) {
     const bool isOverPlan = solid.primitive && solid.primitive->plan != field::PlanUse::None;
     double out_m = isOverPlan ? field::standsOut_m(*solid.primitive, argumentNumbers(solid), height_m) : 0;
     for (const SolidValue& part : solid.parts) out_m = std::max(out_m, standsOut_m(part, height_m));
     return out_m;
 }
+
+namespace {
 
 bool isUpright(const Scope& s) { return s.axes == Mat3{}; }
 

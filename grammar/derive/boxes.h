@@ -16,6 +16,9 @@ inline constexpr double boxSlack_m = 1e-4;
 double reach(const Scope& scope, Vec3d axis);
 /// What `share` times the box takes up along x, y and z about its middle, metres.
 Box3d boxOf(const Scope& scope, double share = 1);
+/// How far eaves and mouldings of a solid, or of one that it is made of, stand out of a scope of such a height beyond
+/// its outline, metres; 0 of what has none.
+double standsOut_m(const SolidValue& solid, double height_m);
 /// The scope of a solid, wider by what stands out of it: mouldings, eaves. A shape without a solid has its own.
 Scope outerScope(const ShapeTree& tree, ShapeId shape);
 /// The depth by which two oriented boxes overlap (separating axes), metres; negative when they are apart.

@@ -95,6 +95,15 @@ private:
     size_t points_ = 0;
 };
 
+/// A scope whose lattice has points amid what stands out of a solid.
+derive::Scope latticeScope(derive::Scope scope, const derive::SolidValue& solid) {
+    if (const double out_m = derive::standsOut_m(solid, scope.size.y); out_m > 0) {
+        scope.size.x = (scope.size.x + out_m) / latticeReach;
+        scope.size.z = (scope.size.z + out_m) / latticeReach;
+    }
+    return scope;
+}
+
 /// Which parts the mesh shows, by part.
 std::vector<bool> visibleParts(const mesh::Mesh& mesh, size_t count) {
     std::vector<bool> visible(count);
@@ -135,7 +144,8 @@ Result<std::vector<BuriedParts>> findBuriedParts(const derive::Derivation& deriv
         const size_t count = std::min(mostSampled, element.parts.size());
         for (size_t i = 0; i < count; ++i) {
             some.push_back(element.parts[i * element.parts.size() / count]);
-            scopes.push_back(derive::liftedScope(derivation, model.shapeOf[some.back()]));
+            const derive::ShapeId shape = model.shapeOf[some.back()];
+            scopes.push_back(latticeScope(derive::liftedScope(derivation, shape), *tree.solidOf(shape)));
         }
         const auto isAddedHere = [&](OriginId part) { return isAdded(tree, model.shapeOf[part]); };
         if (!std::all_of(some.begin(), some.end(), isAddedHere) || lattice.anyOwns(some, scopes)) continue;

@@ -11,7 +11,7 @@ namespace {
 constexpr int fewestAlong = 4;      ///< lines along an axis
 constexpr int mostSteps = 400;      ///< on a line
 constexpr float stepShare = 0.9f;   ///< of how far the surface is at least
-constexpr double leastStep = 0.06;  ///< in cells
+constexpr double leastStep = 0.06;  ///< of a cell, or of the line where that is shorter
 constexpr int halvings = 8;         ///< of a step around a crossing
 
 }  // namespace
@@ -82,8 +82,14 @@ void SurfaceLines::addLine(const Line& line, size_t number) {
         begin = std::max(begin, std::min(toLow, toHigh)), end = std::min(end, std::max(toLow, toHigh));
     }
     if (begin < end)
-        rays_.push_back(
-            {from, along, begin, end, {size_m * (lineReach - 1) / 2, size_m * (lineReach + 1) / 2}, number, 0});
+        rays_.push_back({from,
+                         along,
+                         begin,
+                         end,
+                         leastStep * std::min(cell_m_, size_m),
+                         {size_m * (lineReach - 1) / 2, size_m * (lineReach + 1) / 2},
+                         number,
+                         0});
 }
 
 /// Leaves in `found_` where lines cross the field's surface: each step is about as long as the field says.
@@ -102,7 +108,7 @@ void SurfaceLines::followLines(const eval::Tape& tape, eval::Workspace& workspac
         for (Ray& ray : rays_) {
             before.push_back(ray.place());
             const auto far_m = static_cast<double>(share * std::abs(ray.value));
-            ray.at_m = std::min(ray.at_m + std::max(far_m, leastStep * cell_m_), ray.end_m);
+            ray.at_m = std::min(ray.at_m + std::max(far_m, ray.leastStep_m), ray.end_m);
         }
         placeAll();
         size_t kept = 0;

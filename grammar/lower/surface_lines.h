@@ -53,7 +53,7 @@ private:
     /// A line, and how far along it the field has been followed.
     struct Ray {
         Vec3d from, along;
-        double at_m = 0, end_m = 0;
+        double at_m = 0, end_m = 0, leastStep_m = 0;
         std::array<double, 2> faces_m;  ///< where it crosses the scope's faces
         size_t line = 0;
         float value = 0;

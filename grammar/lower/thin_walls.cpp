@@ -166,9 +166,10 @@ double wallOf(const derive::SolidValue& solid) {
     return least;
 }
 
-/// A scope around all of a solid: eaves stand out of it, and down where the roof is steep.
+/// A scope around all of a solid: eaves and gutters stand out of it, eaves down too where the roof is steep.
 derive::Scope around(derive::Scope scope, const derive::SolidValue& solid) {
-    scope.size += Vec3d{2, 4, 2} * overhangOf(solid);
+    const double out_m = derive::standsOut_m(solid, scope.size.y);
+    scope.size += {2 * out_m, 4 * overhangOf(solid), 2 * out_m};
     return scope;
 }
 

@@ -35,11 +35,12 @@ struct Eave {
     std::vector<SurfaceLines::Bracket> crossings;  ///< of upright lines through it with the roof's own surface
 };
 
-/// A roof with an overhang, where it stands on hills.
+/// A roof with an overhang or a moulding, where it stands on hills.
 struct Roof {
     OriginId part = 0;
     derive::Scope scope;
     double overhang_m = 0;
+    bool isMoulding = false;
     bool hasBoard = false;  ///< else the eaves are wedges
     std::vector<Eave> eaves;
     size_t points = 0, away = 0;        ///< of its surface at the eaves; of them, where the mesh isn't
@@ -81,7 +82,8 @@ private:
         lines_.clear();
         for (int i = 0; i < along; ++i)
             for (const double out : outward)
-                lines_.push_back({eave.point({2 * shareAlong(i) - 1, -1, 2 * out - 1}), eave.axes.y, eave.size.y});
+                lines_.push_back(
+                    {eave.point({2 * shareAlong(i) - 1, -lineReach, 2 * out - 1}), eave.axes.y, eave.size.y});
         return lines_;
     }
 
@@ -131,9 +133,9 @@ double argumentOf(const derive::SolidValue& solid, const field::PrimitiveParamet
 }
 
 /// Boxes around what stands out beyond each edge of the plan.
-std::vector<Eave> eavesOf(const derive::Scope& scope, const derive::Footprints& footprints, double overhang_m) {
+std::vector<Eave> eavesOf(const derive::Scope& scope, const derive::Footprints& footprints, double overhang_m,
+                          double drop_m) {
     std::vector<Eave> eaves;
-    const double drop_m = deepest * overhang_m;
     for (const plan::PlacedEdge& e : plan::edgesOf(derive::footprintOf(scope, footprints))) {
         const plan::Vec2 out = e.normal(), middle = (e.from + e.to) * 0.5 + out * (0.5 * overhang_m);
         derive::Scope eave;
@@ -158,12 +160,22 @@ std::vector<Roof> roofsOf(const derive::Derivation& derivation, const Model& mod
         const derive::Shape& shape = derivation.tree.shapes[id];
         if (shape.solid == derive::none) continue;
         const derive::SolidValue& solid = derivation.tree.solids[shape.solid];
-        const double overhang_m = overhangOf(solid);
-        if (overhang_m <= leastOverhang * cell_m) continue;
+        const bool isMoulding = overhangOf(solid) == 0;
+        const double out_m = isMoulding ? derive::standsOut_m(solid, shape.scope.size.y) : overhangOf(solid);
+        if (out_m <= (isMoulding ? 0 : leastOverhang * cell_m)) continue;
         const derive::Scope scope = derive::liftedScope(derivation, id);
-        const bool hasBoard = argumentOf(solid, field::plan_parameters::fascia) > 0;
-        roofs.push_back(
-            {part, scope, overhang_m, hasBoard, eavesOf(scope, derivation.tree.footprints, overhang_m), 0, 0, {}, {}});
+        const bool hasBoard = isMoulding || argumentOf(solid, field::plan_parameters::fascia) > 0;
+        const double drop_m = isMoulding ? 0 : deepest * out_m;
+        roofs.push_back({part,
+                         scope,
+                         out_m,
+                         isMoulding,
+                         hasBoard,
+                         eavesOf(scope, derivation.tree.footprints, out_m, drop_m),
+                         0,
+                         0,
+                         {},
+                         {}});
     }
     return roofs;
 }
@@ -177,8 +189,11 @@ std::optional<ThinPart> tornOf(Roof& roof, double cell_m) {
     const auto at = [&](double rank) {
         return sizes_m[static_cast<size_t>(rank * static_cast<double>(sizes_m.size()))];
     };
-    ThinPart torn{.kind = ThinPart::Kind::Eaves, .part = roof.part, .places = std::move(roof.places)};
-    torn.thickness_m = at(0.75), torn.cell_m = std::min(at(0.5), cell_m / 2), torn.missing = share;
+    const auto kind = roof.isMoulding ? ThinPart::Kind::Part : ThinPart::Kind::Eaves;
+    ThinPart torn{.kind = kind, .part = roof.part, .places = std::move(roof.places)};
+    const double most_m = roof.isMoulding ? roof.overhang_m : std::numeric_limits<double>::max();
+    torn.thickness_m = std::min(at(0.75), most_m), torn.cell_m = std::min({at(0.5), most_m, cell_m / 2});
+    torn.missing = share;
     return torn;
 }
 

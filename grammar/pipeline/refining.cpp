@@ -67,6 +67,7 @@ public:
             if (isBounded(part) && !isAmong(*missing, part)) missing->push_back(std::move(part));
         for (lower::ThinPart& lacked : *eaves) {
             if (lacked.missing < leastMissingEaves && !isBounded(lacked)) continue;
+            if (lacked.kind == lower::ThinPart::Kind::Part && isAmong(*missing, lacked)) continue;
             lacked.cell_m = lacked.thickness_m;  // cells that hold it without being halved
             missing->push_back(std::move(lacked));
         }

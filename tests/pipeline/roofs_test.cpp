@@ -1,6 +1,7 @@
 // Eaves and parapets of roofs in the meshes of models: halved cells hold them, or they are named.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -23,9 +24,13 @@ Model houseWith(const std::string& roof, const std::string& turn = {}) {
 
 const std::string turned = " turn (0, 25deg, 0)";
 
+/// Roofs, without mouldings.
 size_t tornEaves(const Model& model, const MeshedModel& made) {
-    return lower::findTornEaves(model.derivation, *model.lowered, model.tape, made.mesh, made.grid.cell_m, 2, nullptr)
-        ->size();
+    const auto torn =
+        lower::findTornEaves(model.derivation, *model.lowered, model.tape, made.mesh, made.grid.cell_m, 2, nullptr);
+    return static_cast<size_t>(std::count_if(torn->begin(), torn->end(), [](const lower::ThinPart& part) {
+        return part.kind == lower::ThinPart::Kind::Eaves;
+    }));
 }
 
 /// Wedges that come to nothing at their ends, and boards of 15 cm, in cells of a metre: the volume was up to 9 m³
@@ -95,6 +100,42 @@ TEST(Eaves, ThatNoHalvedCellsHoldAreNamed) {
     EXPECT_NE(warnings[0].text.find("the eaves of 0.1"), std::string::npos) << warnings[0].text;
     EXPECT_NE(warnings[0].text.find("of 2 'pyramidRoof' are too thin for the mesh's cells of 3 m"), std::string::npos)
         << warnings[0].text;
+}
+
+/// A tower of 4 m on a slab, with what goes around it 2 m above its middle.
+Model towerWith(const std::string& moulding, const std::string& turn) {
+    Context context{nullptr, 2};
+    return modelOf("grammar 2\nstart A -> Base" + turn +
+                       "\nrule Base -> cube size (9, 1, 9) + Shaft size (4m, 8m, 4m) at +y\nrule Shaft -> block + " +
+                       moulding + " move (0, 2m, 0)\n",
+                   context);
+}
+
+/// They lie outside of their scopes: a string course was torn, and a sill was missing, without a word.
+TEST(Mouldings, ThatStandOutByLessThanACellAreThere) {
+    constexpr double tower_m3 = 81 + 128;
+    // Along the square and at its corners: the integral of how far the profile stands out, and of its square.
+    const std::pair<const char*, double> mouldings[] = {
+        {"stringMoulding(.12m) size (100%, .25m, 100%)", 16 * .12 * .25 * .7 + 4 * .12 * .12 * .25 * .6},
+        {"sillMoulding(.08m) size (100%, .1m, 100%)", 16 * .08 * .1 * .77 + 4 * .08 * .08 * .1 * .6793}};
+    for (const auto& [moulding, volume_m3] : mouldings)
+        for (const std::string& turn : {std::string(), turned}) {
+            const Model model = towerWith(moulding, turn);
+            const MeshedModel made = meshed(model, 26);
+            EXPECT_NEAR(mesh::measure(made.mesh).volume_m3 - tower_m3, volume_m3, .03 * volume_m3) << moulding << turn;
+            EXPECT_TRUE(made.missing->empty()) << moulding << turn;
+        }
+}
+
+TEST(Mouldings, ThatNoHalvedCellsHoldAreNamed) {
+    Context context{nullptr, 2};
+    const Model model = towerWith("stringMoulding(.01m) size (100%, .04m, 100%)", turned);
+    const MeshedModel made = meshed(model, 12);
+    const auto warnings = meshWarnings(model, made, context);
+    ASSERT_TRUE(warnings.ok());
+    ASSERT_EQ(warnings->size(), 1u);
+    EXPECT_NE((*warnings)[0].text.find("a 'stringMoulding' of 0.01 m is too thin"), std::string::npos)
+        << (*warnings)[0].text;
 }
 
 /// The slopes of a butterfly roof came to nothing at its valley, and fell apart there.
