@@ -37,8 +37,9 @@ constexpr double besideCells = 0.1;        ///< cells: the same
 /// Points of a face that are looked at.
 struct FacePoints {
     int mostAlong, most;
+    double apart = 1;  ///< of half a cell, or of the thickness where that is less
 };
-constexpr FacePoints roughly{16, 64}, closely{256, 1024};
+constexpr FacePoints roughly{16, 64}, closely{256, 1024}, atBorders{1024, 8192, 0.25};
 constexpr double leastRoughly = 0.7;        ///< share of a face that has to be free to be looked at closely
 constexpr float reachCells = 0.4375f;       ///< a part's mesh is so near to where the field has its surface
 constexpr float tornShare = 0.08f;          ///< of a round part's thickness: its mesh is so near
@@ -161,11 +162,18 @@ private:
                 continue;
             }
             if (exposedShare(candidate, axis, tape, roughly) < leastRoughly) continue;
-            const double exposed = exposedShare(candidate, axis, tape, closely), lacks = 1 - covered / exposed;
-            if (exposed >= mostlyFree && lacks >= (exposed < 1 ? leastOfFaces : leastMissingArea))
-                most = std::max(most, lacks);
+            // Points that lie closer see what of the borders is buried, as of a door's leaf in its frame.
+            if (lackedOfFace(candidate, axis, covered, tape, closely) > 0)
+                most = std::max(most, lackedOfFace(candidate, axis, covered, tape, atBorders));
         }
         return most;
+    }
+
+    /// The share of a face that is free, but not covered; 0 where too little of it is free, or nearly all is covered.
+    double lackedOfFace(const Candidate& candidate, int axis, double covered, const eval::Tape& tape,
+                        const FacePoints& points) {
+        const double exposed = exposedShare(candidate, axis, tape, points), lacks = 1 - covered / exposed;
+        return exposed >= mostlyFree && lacks >= (exposed < 1 ? leastOfFaces : leastMissingArea) ? lacks : 0;
     }
 
     /// The share of both faces across an axis that is the part's own surface.
@@ -173,7 +181,7 @@ private:
         const derive::Scope& scope = candidate.scope;
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
         const double apart_m =
-            std::min(0.5 * cell_m_, minComponent(scope.size));  // what crosses a bar is about as wide
+            points.apart * std::min(0.5 * cell_m_, minComponent(scope.size));  // what crosses a bar is about as wide
         const auto along = [&](int across, int most) {
             return static_cast<int>(
                 std::clamp(std::ceil(scope.size[across] / apart_m), double{fewestLines}, static_cast<double>(most)));
@@ -326,15 +334,11 @@ Presence presenceOf(const mesh::Mesh& mesh, std::span<const Candidate> thin, std
 
 std::vector<ThinPart> lackedOf(std::span<const Candidate> thin) {
     std::vector<ThinPart> found;
-    for (const Candidate& c : thin)
-        if (c.missing > 0)
-            found.push_back({ThinPart::Kind::Part,
-                             c.part,
-                             -1,
-                             minComponent(c.scope.size),
-                             cellThatHolds(c.scope),
-                             c.missing,
-                             {c.scope}});
+    for (const Candidate& c : thin) {
+        if (!(c.missing > 0)) continue;
+        found.push_back({.part = c.part, .missing = c.missing, .places = {c.scope}});
+        found.back().thickness_m = minComponent(c.scope.size), found.back().cell_m = cellThatHolds(c.scope);
+    }
     return found;
 }
 

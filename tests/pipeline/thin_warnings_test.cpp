@@ -42,6 +42,18 @@ TEST(ThinWarnings, SayThatHalvingEndsAtTheBoundOfTriangles) {
             << w.text;
 }
 
+/// The points that told how much of its faces is free missed 5 cm at each side that lie in the wall.
+TEST(ThinWarnings, DontNameALeafWhoseSidesAreInItsWall) {
+    const std::string text =
+        "start A -> cube size (40, 1, 34) + Wall size (6m, 5m, .6m) turn 33deg move (0, 3m, 0)\n"
+        "rule Wall -> cube - cube size (1.4m, 2.4m, 200%) move (0, -.9m, 0)\n"
+        "  + cube size (1.5m, 2.5m, .12m) move (0, -.9m, 0)\n";
+    for (const int resolution : {128, 150}) {
+        const Warned door = warned(text, resolution);
+        EXPECT_TRUE(door.warnings.empty()) << door.warnings[0].text;
+    }
+}
+
 TEST(ThinWarnings, DontSpeakOfTheBoundWhereHalvingIsOver) {
     const Warned rod = warned("start A -> cube size 8m + cube size (.02m, 4m, .02m) at +y\n", 24);
     ASSERT_EQ(rod.warnings.size(), 1u);
