@@ -20,11 +20,12 @@ struct ThinPart {
     double thickness_m = 0;  ///< the least extent of the part's scope, or of its walls or shell; of the wall or gap
     double cell_m = 0;       ///< cells no larger than this hold it
     /// Share of the part's surface without a triangle within half a cell, or of a plate's area; of lines across the
-    /// wall or gap with neither of its surfaces.
+    /// wall or gap with neither of its surfaces. 0 where that is too little to be told, but worth halved cells.
     double missing = 0;
     std::vector<derive::Scope> places;  ///< where it is
     bool isShell = false;               ///< of a part: its walls are what is thin
     int halvings = 0;                   ///< cells around it may be halved so often
+    size_t mostTriangles = 0;           ///< that the mesh may come to have by that, or four times those that it has
     bool isBounded = false;             ///< cells there would be halved more often if that took fewer triangles
 };
 

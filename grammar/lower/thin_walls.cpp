@@ -32,6 +32,7 @@ constexpr double beyondWall = 0.5;    ///< cells beyond both surfaces of a wall 
 constexpr size_t fewestMissing = 3;     ///< lines across a wall that the mesh lacks: a hole in it is seen
 constexpr double leastOfCut = 0.05;     ///< share of the surface of a cut that walls are missing from
 constexpr double leastOfShell = 0.004;  ///< the same of a shell
+constexpr double leastOfWedge = 0.7;    ///< of a shell's thickness: less is a wedge at its end
 constexpr size_t mostPlaces = 100000;   ///< that are told one by one; of further parts their scope is
 /// Times the median: what half of the walls' thicknesses differ by at most. Where two cuts touch or two faces meet in
 /// an edge the solid has any thickness down to none, which no cells hold.
@@ -204,6 +205,7 @@ ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, doubl
     ThinPart missing{
         .kind = isShell ? ThinPart::Kind::Part : ThinPart::Kind::Wall, .part = walls.of.part, .places = {}};
     std::vector<double> thicknesses_m, cells_m;
+    size_t atWedges = 0;
     for (const WallLine& line : walls.lines)
         missing.places.push_back({line.from + line.inward * (0.5 * line.thickness_m),
                                   axesAlong(line.inward),
@@ -211,6 +213,7 @@ ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, doubl
     for (size_t i = 0; i < walls.deciding().size(); ++i) {
         if (isMet[i]) continue;
         const WallLine& line = walls.deciding()[i];
+        if (line.thickness_m < leastOfWedge * walls.of.shell_m) ++atWedges;
         thicknesses_m.push_back(line.thickness_m), cells_m.push_back(line.thickness_m * turnOf(line.inward));
     }
     const auto lacked = static_cast<double>(thicknesses_m.size());
@@ -224,6 +227,9 @@ ThinPart missingOf(const ThinWalls& walls, std::span<const uint8_t> isMet, doubl
     if (!isShell && at(thicknesses_m, 0.75) - at(thicknesses_m, 0.25) > mostSpread * missing.thickness_m) return {};
     if (isShell) missing.thickness_m = walls.of.shell_m, missing.isShell = true;
     missing.missing = lacked / (isShell ? walls.decidingPoints() : static_cast<double>(walls.lines.size()));
+    // A shell comes to nothing where it ends in a wedge: cells are halved there, but some of its tip is always missing.
+    if (isShell) missing.missing -= static_cast<double>(atWedges) / walls.decidingPoints();
+    if (isShell && missing.missing < leastOfShell) missing.missing = 0;
     missing.cell_m = std::min(std::max(at(cells_m, 0.1), 0.5 * walls.of.shell_m), cell_m / 2);
     if (placesBefore > mostPlaces) missing.places = {walls.of.scope};
     return missing;
@@ -260,7 +266,7 @@ Result<std::vector<ThinPart>> findMissingWalls(const derive::Derivation& derivat
         for (const ThinWalls& walls : some) {
             ThinPart missing = missingOf(walls, rest.first(walls.deciding().size()), cell, places);
             places += missing.places.size();
-            if (missing.missing > 0) all.push_back(std::move(missing));
+            if (!missing.places.empty()) all.push_back(std::move(missing));
             rest = rest.subspan(walls.deciding().size());
         }
     std::sort(all.begin(), all.end(), [](const ThinPart& a, const ThinPart& b) { return a.part < b.part; });

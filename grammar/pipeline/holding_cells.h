@@ -23,7 +23,7 @@ private:
 
     double cell_m_;
     const std::vector<lower::ThinPart>& missing_;
-    std::vector<double> areas_m2_;  ///< of the missing parts, seen from one side
+    double mostTriangles_ = 0;  ///< of halved cells
 };
 
 }  // namespace sgm::pipeline

@@ -29,7 +29,7 @@ Result<MeshedModel> makeMesh(const Model& model, const mesh::Grid& grid, mesh::P
     context.stages.emplace_back("sample", seconds * share);
     context.stages.emplace_back("polygonize", seconds * (1 - share));
     if (options.surface == mesh::Surface::Crisp && options.halvings > 0) {
-        auto missing = holdThinParts(model, made.mesh, made.grid, options.halvings, context);
+        auto missing = holdThinParts(model, made.mesh, made.grid, options, context);
         if (!missing.ok()) return missing.error();
         made.missing = std::move(*missing);
     }

@@ -127,8 +127,10 @@ double withTwoDigits(double value) {
 Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
                                                       Progress* progress) {
     if (meshed.missing) return *meshed.missing;
-    return lower::findMissingParts(model.derivation, *model.lowered, model.tape, meshed.mesh, meshed.grid.cell_m,
-                                   threads, progress);
+    auto missing = lower::findMissingParts(model.derivation, *model.lowered, model.tape, meshed.mesh,
+                                           meshed.grid.cell_m, threads, progress);
+    if (missing.ok()) std::erase_if(*missing, [](const lower::ThinPart& part) { return !(part.missing > 0); });
+    return missing;
 }
 
 std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& grid,

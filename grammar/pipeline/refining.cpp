@@ -20,9 +20,9 @@
 namespace sgm::pipeline {
 namespace {
 
-constexpr size_t mostGrowth = 4, leastBound = 1000000;  ///< of triangles
-constexpr size_t tornDivisor = 4;                       ///< of that bound, for how much more what is torn may use
-constexpr double cellsPerTriangle = 16;                 ///< at most looked at, of the triangles that the mesh may have
+constexpr size_t mostGrowth = 4;         ///< of triangles
+constexpr size_t tornDivisor = 4;        ///< of that bound, for how much more what is torn may use
+constexpr double cellsPerTriangle = 16;  ///< at most looked at, of the triangles that the mesh may have
 constexpr int mostHalvingsOfCells = 3;
 constexpr double leastMissingEaves = 0.5;  ///< share of eaves that the mesh is said to lack
 
@@ -31,13 +31,15 @@ using HalvedCells = std::array<mesh::CellSet, mostHalvingsOfCells + 1>;
 
 class ThinPartRefiner {
 public:
-    ThinPartRefiner(const Model& model, mesh::Mesh& mesh, const mesh::Grid& grid, int mostHalvings, Context& context)
+    ThinPartRefiner(const Model& model, mesh::Mesh& mesh, const mesh::Grid& grid,
+                    const mesh::PolygonizeOptions& options, Context& context)
         : model_(model),
           mesh_(mesh),
           grid_(grid),
-          most_(mesh::isExpensive(model.tape) ? 0 : std::min(mostHalvings, mostHalvingsOfCells)),
+          most_(mesh::isExpensive(model.tape) ? 0 : std::min(options.halvings, mostHalvingsOfCells)),
           context_(context),
-          mostTriangles_(std::max(mostGrowth * mesh.triangleCount(), leastBound)) {}
+          leastBound_(options.halvedTriangles),
+          mostTriangles_(std::max(mostGrowth * mesh.triangleCount(), leastBound_)) {}
 
     /// Cells around what the mesh lacks are meshed anew, and again with smaller ones while some of it is still missing:
     /// within its scope a part may be thinner. What isn't missing stays so, for smaller cells have the larger ones'
@@ -71,7 +73,9 @@ public:
             lacked.cell_m = lacked.thickness_m;  // cells that hold it without being halved
             missing->push_back(std::move(lacked));
         }
-        for (lower::ThinPart& part : *missing) part.halvings = most_, part.isBounded = isBounded(part);
+        std::erase_if(*missing, [](const lower::ThinPart& part) { return !(part.missing > 0); });
+        for (lower::ThinPart& part : *missing)
+            part.halvings = most_, part.mostTriangles = leastBound_, part.isBounded = isBounded(part);
         context_.stages.emplace_back("thin parts", findingSeconds_);
         if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
         return missing;
@@ -85,6 +89,7 @@ private:
     struct Request {
         Place place;
         std::vector<Vec3i> cells;
+        double wholeTriangles;  ///< of the part in cells that aren't halved; 0 of walls
     };
     /// By how often cells are to be halved.
     using RequestsByHalvings = std::array<std::vector<Request>, mostHalvingsOfCells + 1>;
@@ -161,11 +166,15 @@ private:
                 continue;
             }
             cellCount += wish.cells;
+            const lower::ThinPart& part = *wish.part;
             mesh::CellSet around;
-            lower::addCellsAround(*wish.part, grid_, around);
-            int& tried = tried_[placeOf(*wish.part)];
+            lower::addCellsAround(part, grid_, around);
+            int& tried = tried_[placeOf(part)];
             tried = std::max(wish.halvings, halvingsIn(around));
-            asked[static_cast<size_t>(tried)].push_back({placeOf(*wish.part), around.list()});
+            // Places of walls overlap, for they are found along all axes.
+            const bool isWall = part.isShell || part.kind == lower::ThinPart::Kind::Wall;
+            const double triangles = isWall ? 0 : trianglesOfPart(part, static_cast<double>(grid_.cell_m));
+            asked[static_cast<size_t>(tried)].push_back({placeOf(part), around.list(), triangles});
         }
         return asked;
     }
@@ -201,6 +210,9 @@ private:
                 if (next == all.size() || all.list()[next] != cell) continue;
                 if (counts[next++] > 0) growth[i] += after;
             }
+        // Where the mesh shows nothing of a part, its size tells how many there will be.
+        for (size_t i = 0; i < asked.size(); ++i)
+            growth[i] = std::max(growth[i], static_cast<size_t>(std::ldexp(asked[i].wholeTriangles, 2 * halvings)));
         return growth;
     }
 
@@ -271,6 +283,7 @@ private:
     const mesh::Grid& grid_;
     const int most_;
     Context& context_;
+    const size_t leastBound_;
     size_t mostTriangles_;
     std::map<Place, int> tried_;  ///< halvings of the cells there
     std::set<Place> bounded_;     ///< where halving ended at the bound of triangles
@@ -281,8 +294,8 @@ private:
 }  // namespace
 
 Result<std::vector<lower::ThinPart>> holdThinParts(const Model& model, mesh::Mesh& mesh, const mesh::Grid& grid,
-                                                   int mostHalvings, Context& context) {
-    return ThinPartRefiner(model, mesh, grid, mostHalvings, context).run();
+                                                   const mesh::PolygonizeOptions& options, Context& context) {
+    return ThinPartRefiner(model, mesh, grid, options, context).run();
 }
 
 }  // namespace sgm::pipeline

@@ -22,7 +22,9 @@ enum class Surface {
 
 struct PolygonizeOptions {
     Surface surface = Surface::Cubes;
-    int halvings = 3;     ///< crisp cells around thin parts are halved so often at most; asked of who knows the parts
+    int halvings = 3;  ///< crisp cells around thin parts are halved so often at most; asked of who knows the parts
+    /// So many triangles, or four times those that it has, a mesh may come to have by that.
+    size_t halvedTriangles = 8'000'000;
     int threads = 0;      ///< 0 = all
     int refineSteps = 3;  ///< evaluations a vertex may take after linear interpolation; 0 = the paper's interpolation
     bool positionsOnly = false;  ///< of Cubes: the shape alone, which is the same: chunks without normals and origins

@@ -44,11 +44,14 @@ inline Model modelOf(const std::string& text, Context& context) {
     return std::move(*model);
 }
 
-/// `resolution` cells along the longest side, halved up to `halvings` times around thin parts; on two threads.
-inline MeshedModel meshed(const Model& model, int resolution, int halvings = 3) {
+/// `resolution` cells along the longest side, halved up to `halvings` times around thin parts, to so many triangles; on
+/// two threads.
+inline MeshedModel meshed(const Model& model, int resolution, int halvings = 3,
+                          size_t triangles = mesh::PolygonizeOptions{}.halvedTriangles) {
     Context context{nullptr, 2};
     auto made =
-        makeMesh(model, gridOf(model, resolution), {.surface = mesh::Surface::Crisp, .halvings = halvings}, context);
+        makeMesh(model, gridOf(model, resolution),
+                 {.surface = mesh::Surface::Crisp, .halvings = halvings, .halvedTriangles = triangles}, context);
     EXPECT_TRUE(made.ok());
     return std::move(*made);
 }

@@ -19,22 +19,25 @@ struct Warned {
     std::vector<MeshWarning> warnings;
 };
 
-Warned warned(const std::string& text, int resolution, int halvings = 3) {
+Warned warned(const std::string& text, int resolution, int halvings = 3,
+              size_t triangles = mesh::PolygonizeOptions{}.halvedTriangles) {
     Context context{nullptr, 2};
     Model model = modelOf("grammar 2\n" + text, context);
-    MeshedModel made = meshed(model, resolution, halvings);
+    MeshedModel made = meshed(model, resolution, halvings, triangles);
     const auto missing = findMissingParts(model, made, 2, nullptr);
     EXPECT_TRUE(missing.ok());
     auto warnings = missingWarnings(model, made.grid, *missing);
     return {std::move(model), std::move(made), std::move(warnings)};
 }
 
+constexpr size_t million = 1'000'000;  ///< triangles
+
 /// At 128 cells that hold the roof would have more than a million triangles.
 TEST(ThinWarnings, SayThatHalvingEndsAtTheBoundOfTriangles) {
     const Warned roof = warned(
         "start A -> footprint rect(90, 70) extrude 6m H\n"
         "rule H -> shellBlock(.3m, .3m) + shedRoof(20deg, overhang: .6m, cover: .2m) at +y\n",
-        128);
+        128, 3, million);
     ASSERT_FALSE(roof.warnings.empty());
     for (const MeshWarning& w : roof.warnings)
         EXPECT_NE(w.text.find("for halving them often enough takes too many triangles: --resolution "),
@@ -74,11 +77,11 @@ TEST(ThinWarnings, NameWhatStaysTornAtTheBoundOfTriangles) {
 /// The cells around the roof would have more than a million triangles, those around the rails few.
 TEST(ThinWarnings, NameWhatTakesMostTrianglesAlone) {
     const Warned house = warned(
-        "start A -> footprint rect(60, 46) extrude 6m H\n"
+        "start A -> footprint rect(90, 70) extrude 6m H\n"
         "rule H -> block + shedRoof(20deg, overhang: .6m, cover: .2m) at +y + Rail size (60m, 2m, .12m) move (0, 0, "
         "40m)\n"
         "rule Rail -> split x { { .12m: cube | ~1m: nil }* } + cube size (100%, .12m, 100%) at +y\n",
-        96);
+        96, 3, million);
     ASSERT_FALSE(house.warnings.empty());
     for (const MeshWarning& w : house.warnings) EXPECT_NE(w.text.find("'shedRoof'"), std::string::npos) << w.text;
 }
@@ -151,10 +154,10 @@ TEST(ThinWarnings, NameAResolutionThatHoldsWhatTheBoundOfTrianglesEnds) {
     const char* const shed =
         "start A -> footprint rect(90, 70) extrude 6m H\n"
         "rule H -> shellBlock(.3m, .3m) + shedRoof(20deg, overhang: .6m, cover: .2m) at +y\n";
-    const int named = namedIn(warned(shed, 128).warnings);
+    const int named = namedIn(warned(shed, 128, 3, million).warnings);
     EXPECT_GT(named, 128);
     EXPECT_LT(named, 300);
-    Warned held = warned(shed, named);
+    Warned held = warned(shed, named, 3, million);
     EXPECT_NEAR(volumeOf(held) / 3806.6, 1, .002) << named;
 }
 

@@ -18,8 +18,7 @@ struct FinerMesh {
 };
 Result<FinerMesh> withThinParts(const BuiltMesh& coarse, pipeline::Context& context) {
     mesh::Mesh mesh = *coarse.mesh;
-    auto missing =
-        pipeline::holdThinParts(coarse.of->model, mesh, coarse.grid, mesh::PolygonizeOptions{}.halvings, context);
+    auto missing = pipeline::holdThinParts(coarse.of->model, mesh, coarse.grid, {}, context);
     if (!missing.ok()) return missing.error();
     if (mesh.triangleCount() == coarse.mesh->triangleCount()) return FinerMesh{nullptr, std::move(*missing)};
     auto finer = std::make_shared<BuiltMesh>(coarse);
