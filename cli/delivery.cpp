@@ -95,9 +95,11 @@ void printSummary(const BuildRequest& request, const Model& model, const pipelin
     double total = 0;
     for (const auto& stage : stages) total += stage.second;
     const mesh::MeshFigures& f = figures.mesh;
-    fmt::print("{} shapes, {} rules; {} triangles in {} component{}, {:.4g} m³; {:.2f} s\n",
+    const std::string cavities =
+        f.cavities == 0 ? "" : fmt::format(", {} of them {}", f.cavities, f.cavities == 1 ? "a cavity" : "cavities");
+    fmt::print("{} shapes, {} rules; {} triangles in {} component{}{}, {:.4g} m³; {:.2f} s\n",
                model.derivation.tree.shapes.size(), model.derivation.classic + model.derivation.morphic, f.triangles,
-               f.components, f.components == 1 ? "" : "s", f.volume_m3, total);
+               f.components, f.components == 1 ? "" : "s", cavities, f.volume_m3, total);
     if (!scene.empty()) {
         uint64_t own = 0;
         for (const mesh::SceneObject& object : scene.objects) own += object.mesh.triangleCount();

@@ -26,14 +26,10 @@ Json fieldFigures(const Model& model, const MeshedModel& meshed) {
 Json boundsJson(const Box3f& b) { return {{b.lo.x, b.lo.y, b.lo.z}, {b.hi.x, b.hi.y, b.hi.z}}; }
 
 Json meshFigures(const mesh::MeshFigures& f) {
-    Json figures{{"vertices", f.vertices},
-                 {"triangles", f.triangles},
-                 {"components", f.components},
-                 {"boundary_edges", f.boundaryEdges},
-                 {"nonmanifold_edges", f.nonmanifoldEdges},
-                 {"euler", f.euler},
-                 {"volume_m3", f.volume_m3},
-                 {"area_m2", f.area_m2}};
+    Json figures{
+        {"vertices", f.vertices}, {"triangles", f.triangles},          {"components", f.components},
+        {"cavities", f.cavities}, {"boundary_edges", f.boundaryEdges}, {"nonmanifold_edges", f.nonmanifoldEdges},
+        {"euler", f.euler},       {"volume_m3", f.volume_m3},          {"area_m2", f.area_m2}};
     if (!f.bounds.empty()) figures["bounds"] = boundsJson(f.bounds);
     return figures;
 }

@@ -108,12 +108,16 @@ MeshFigures measureFlat(const Flat& flat) {
     });
     figures.components = surfaces.count;
     const Vec3d origin = flat.positions.empty() ? Vec3d{} : flat.positions.front().as<double>();
+    std::vector<double> volumes_m3(surfaces.count);
     for (const Triangle& t : flat.triangles) {
         const Vec3d a = flat.positions[t.x].as<double>() - origin, b = flat.positions[t.y].as<double>() - origin,
                     c = flat.positions[t.z].as<double>() - origin;
-        figures.volume_m3 += dot(a, cross(b, c)) / 6;
+        const double volume_m3 = dot(a, cross(b, c)) / 6;
+        figures.volume_m3 += volume_m3, volumes_m3[surfaces.of[t.x]] += volume_m3;
         figures.area_m2 += length(cross(b - a, c - a)) / 2;
     }
+    figures.cavities = static_cast<uint64_t>(
+        std::count_if(volumes_m3.begin(), volumes_m3.end(), [](double volume_m3) { return volume_m3 < 0; }));
     for (uint32_t v = 0; v < flat.positions.size(); ++v) {
         if (surfaces.of[v] == SurfaceLabels::none) continue;
         ++figures.vertices;

@@ -10,6 +10,7 @@ namespace sgm::mesh {
 /// Counted over the vertices that triangles use; `volume_m3` by the divergence theorem (positive = outward).
 struct MeshFigures {
     uint64_t vertices = 0, triangles = 0, components = 0;
+    uint64_t cavities = 0;          ///< of the components: surfaces around air, whose volume is negative
     uint64_t boundaryEdges = 0;     ///< edges of one triangle
     uint64_t nonmanifoldEdges = 0;  ///< edges of three or more, or of two that run the same way
     int64_t euler = 0;              ///< V − E + F

@@ -49,6 +49,15 @@ TEST(Measure, TetrahedraHaveTheirClosedForms) {
     EXPECT_EQ(f.bounds, (Box3f{{5, 0, 0}, {10, 6, 6}}));
 }
 
+TEST(Measure, CavitiesAreComponentsTurnedInsideOut) {
+    Mesh m = tetrahedra({{0, 0, 0}, {9, 0, 0}, {0, 9, 0}});
+    EXPECT_EQ(measure(m).cavities, 0u);
+    for (size_t t = 0; t < 4; ++t) std::swap(m.chunks[0].triangles[t].y, m.chunks[0].triangles[t].z);
+    EXPECT_EQ(measure(m).components, 3u);
+    EXPECT_EQ(measure(m).cavities, 1u);
+    EXPECT_NEAR(measure(m).volume_m3, 1.0 / 6, 1e-12);
+}
+
 TEST(Measure, MissingTriangleLeavesThreeBoundaryEdges) {
     Mesh m = tetrahedra({{0, 0, 0}});
     m.chunks[0].triangles.pop_back();

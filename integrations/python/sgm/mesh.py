@@ -93,8 +93,8 @@ class Mesh:
         return self._core.stages
 
     def report(self) -> Dict[str, Any]:
-        """Figures: `mesh` (triangles, components, edges that aren't closed, volume, area, bounds, how many components
-        float), `field` (instructions, evaluations) and `stages`."""
+        """Figures: `mesh` (triangles, components, cavities among them, edges that aren't closed, volume, area, bounds,
+        how many components float), `field` (instructions, evaluations) and `stages`."""
         return {"mesh": self._core.figures, "field": self._core.field_figures, "stages": self.stages}
 
     def save(self, path: Union[str, "os.PathLike[str]"], *, objects: str = "", collider: str = "", levels: int = 1,

@@ -104,9 +104,9 @@ py::dict figuresOf(const Mesh& mesh) {
     using namespace py::literals;
     const auto floating = std::count_if(solids.begin(), solids.end(), [](const auto& s) { return s.floats; });
     return py::dict("vertices"_a = f.vertices, "triangles"_a = f.triangles, "components"_a = f.components,
-                    "boundary_edges"_a = f.boundaryEdges, "nonmanifold_edges"_a = f.nonmanifoldEdges,
-                    "euler"_a = f.euler, "volume_m3"_a = f.volume_m3, "area_m2"_a = f.area_m2,
-                    "bounds"_a = tupleOf(f.bounds), "floating"_a = floating);
+                    "cavities"_a = f.cavities, "boundary_edges"_a = f.boundaryEdges,
+                    "nonmanifold_edges"_a = f.nonmanifoldEdges, "euler"_a = f.euler, "volume_m3"_a = f.volume_m3,
+                    "area_m2"_a = f.area_m2, "bounds"_a = tupleOf(f.bounds), "floating"_a = floating);
 }
 
 py::dict fieldFiguresOf(const Mesh& mesh) {
