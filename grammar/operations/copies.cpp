@@ -40,6 +40,10 @@ std::shared_ptr<Parts> checkCopies(OperationChecker& checker, const syntax::Attr
     out->span = written.span;
     out->operation = written.operation;
     checker.beginDraws(std::string(written.operation->name));
+    if (counts && !written.args.empty() && written.args[0].kind == syntax::Expr::Kind::Number &&
+        written.args[0].number == 0)
+        checker.error(written.args[0].span, fmt::format("'{}' makes no copy", written.operation->name),
+                      "write 1 or more");
     if (counts && !written.args.empty())
         out->args.push_back(
             checker.expression(written.args[0], Want::Count, fmt::format("'{}'", written.operation->name)));

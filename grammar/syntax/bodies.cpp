@@ -157,7 +157,7 @@ Case readCase(Cursor& cursor, std::string_view sample) {
             cursor.complain(label, quoted(label.text()) + " has no label before it",
                             "write " + quoted(plain(sample) + ": " + plain(label.text())));
             part.body = bodyOf(*std::exchange(part.label, std::nullopt));
-        } else if (cursor.done() || cursor.at("|") || cursor.at("}")) {
+        } else if (cursor.done() || cursor.at("|") || cursor.at("}") || cursor.at(",")) {
             cursor.expect(":", "and a body after " + quoted(label.text()));
         } else {
             const std::string hint = "write " + quoted(plain(label.text()) + ": " + plain(cursor.peekText()));

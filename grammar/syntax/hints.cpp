@@ -98,15 +98,20 @@ std::string hintIn(std::span<const ForeignWord> words, std::string_view word) {
     return row == words.end() ? std::string() : std::string(row->hint);
 }
 
-/// The word before the parenthesis that the token before the cursor closes.
-std::string_view calledBefore(const Cursor& cursor) {
+/// How many tokens back the word is before the parenthesis that the token before the cursor closes; 0 without one.
+size_t calleeBefore(const Cursor& cursor) {
     int depth = 0;
     for (size_t back = 1;; ++back) {
         const std::string_view text = cursor.text(cursor.previous(back));
-        if (text.empty()) return {};
+        if (text.empty()) return 0;
         depth += (text == ")") - (text == "(");
-        if (depth == 0) return text == "(" ? cursor.text(cursor.previous(back + 1)) : std::string_view();
+        if (depth == 0) return text == "(" ? back + 1 : 0;
     }
+}
+
+std::string_view calledBefore(const Cursor& cursor) {
+    const size_t back = calleeBefore(cursor);
+    return back == 0 ? std::string_view() : cursor.text(cursor.previous(back));
 }
 
 /// 2,5 where nothing of a vector could stand; the cursor is at the comma or behind it.
@@ -231,6 +236,23 @@ std::optional<Hint> ofOtherGrammars(const Cursor& cursor, std::string_view messa
     if (cursor.text(last) == "case" && message.ends_with("can't follow a shape"))
         return Hint{cursor.span(last), "there is no 'case'",
                     "a rule's condition stands before '->': 'rule B when … -> …'; " + std::string(ifMend)};
+    if (cursor.at("{") && message.starts_with("expected a shape"))
+        return Hint{cursor.span(token), std::string(message), "'(a + b)' groups shapes"};
+    if (cursor.at("{") || (cursor.at("(") && last.kind == Token::Kind::Word)) {
+        const size_t back = cursor.text(last) == ")" ? calleeBefore(cursor) : 1;
+        const Token word = cursor.previous(std::max<size_t>(back, 1));
+        const std::string fix = foreignAttributeHint(cursor.text(word));
+        const bool isAttribute = fix == "write 'move'" || fix == "write 'turn'" || fix == "write 'size'";
+        if (!fix.empty())
+            return Hint{cursor.span(word), "there is no " + quoted(cursor.text(word)),
+                        fix + (isAttribute ? " behind a shape" : "")};
+    }
+    if (cursor.at("[") && message.starts_with("expected a value"))
+        return Hint{cursor.span(token), std::string(message), "a vector stands in parentheses: write '(x, y, z)'"};
+    if (cursor.at("weight") && message.starts_with("unexpected") && cursor.at(Token::Kind::Number, 1))
+        return Hint{cursor.span(token), "unexpected 'weight'",
+                    "a rule's weight stands before '->': write " +
+                        quoted("weight " + std::string(cursor.peekText(1)) + " -> …")};
     if (cursor.at("[") && message.starts_with("unexpected"))
         return Hint{cursor.span(token), "unexpected '['",
                     "there are no brackets: '(a + b)' groups shapes, and ',' sets those apart that stand side by side"};
