@@ -76,10 +76,10 @@ Json floatingFigures(const Model& model, const Support& support) {
     return list;
 }
 
-/// The parts that are too thin for the cells, the walls at faces of cuts, the gaps at faces of parts and the eaves,
-/// which the mesh lacks.
+/// The parts that are too thin for the cells, the walls at faces of cuts, the gaps at faces of parts, the eaves
+/// and the rims which the mesh lacks.
 Json missingFigures(const Model& model, const std::vector<lower::ThinPart>& missing) {
-    constexpr std::array kinds{"part", "wall", "gap", "eaves"};
+    constexpr std::array kinds{"part", "wall", "gap", "eaves", "rim"};
     Json list = Json::array();
     for (const lower::ThinPart& m : missing) {
         const Part& part = model.lowered->provenance.parts[m.part];

@@ -11,14 +11,17 @@
 namespace sgm::lower {
 
 /// A part that is too thin for the cells, or whose walls or shell are; a thin wall beside a cut, a narrow gap at a face
-/// of a part, or a roof's eaves: the mesh shows none of it in places.
+/// of a part, a roof's eaves, or what stands out of others of a thick part, its rim: the mesh shows none of it in
+/// places.
 struct ThinPart {
-    enum class Kind : uint8_t { Part, Wall, Gap, Eaves };
+    enum class Kind : uint8_t { Part, Wall, Gap, Eaves, Rim };
     Kind kind = Kind::Part;
-    OriginId part = 0;       ///< or the cut
-    int face = -1;           ///< of its scope, where the wall or gap is: 2 · axis + (high side); −1: anywhere
-    double thickness_m = 0;  ///< the least extent of the part's scope, or of its walls or shell; of the wall or gap
-    double cell_m = 0;       ///< cells no larger than this hold it
+    OriginId part = 0;  ///< or the cut
+    int face = -1;      ///< of its scope, where the wall or gap is: 2 · axis + (high side); −1: anywhere
+    /// The least extent of the part's scope, or of its walls or shell; of the wall or gap; of a rim about the width of
+    /// the narrowest strip that the mesh shows.
+    double thickness_m = 0;
+    double cell_m = 0;  ///< cells no larger than this hold it
     /// Share of the part's surface without a triangle within half a cell, or of a plate's area; of lines across the
     /// wall or gap with neither of its surfaces. 0 where that is too little to be told, but worth halved cells.
     double missing = 0;

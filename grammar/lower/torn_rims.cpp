@@ -173,7 +173,7 @@ Result<std::vector<ThinPart>> findTornRims(const derive::Derivation& derivation,
         if (rim.away < fewestAway) continue;
         const double share = static_cast<double>(rim.away) / static_cast<double>(rim.points.size());
         if (share < leastAway) continue;
-        ThinPart part{.kind = ThinPart::Kind::Part, .part = rim.part, .places = {}};
+        ThinPart part{.kind = ThinPart::Kind::Rim, .part = rim.part, .places = {}};
         part.thickness_m = rim.width_m, part.cell_m = static_cast<double>(cell_m) / 2, part.missing = share;
         const double edge_m = std::min(rim.spacing_m, static_cast<double>(cell_m));
         for (const Vec3d& at : rim.points) part.places.push_back({at, rim.scope.axes, {edge_m, edge_m, edge_m}});

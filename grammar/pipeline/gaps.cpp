@@ -140,7 +140,8 @@ public:
         : model_(model), shapes_(model.derivation.tree.shapes), isMissing_(shapes_.size(), false) {
         for (const lower::ThinPart& part : missing) {
             for (const derive::Scope& place : part.places) places_.push_back(derive::boxOf(place));
-            if (part.kind == lower::ThinPart::Kind::Part) missing_.push_back(part);
+            if (part.kind == lower::ThinPart::Kind::Part || part.kind == lower::ThinPart::Kind::Rim)
+                missing_.push_back(part);
             if (part.isShell || (part.kind == lower::ThinPart::Kind::Wall && part.face < 0)) addFragmented(part);
         }
         for (size_t i = 0; i < missing_.size(); ++i)

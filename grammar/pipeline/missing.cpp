@@ -106,6 +106,7 @@ std::string nameOf(const Line& line, lower::ThinPart::Kind kind) {
     const std::string count = one ? "a" : std::to_string(line.parts);
     if (kind == lower::ThinPart::Kind::Part)
         return fmt::format("{} '{}' of {:.3g} m", count, line.symbol, line.thickness_m);
+    if (kind == lower::ThinPart::Kind::Rim) return fmt::format("what shows of {} '{}'", count, line.symbol);
     if (kind == lower::ThinPart::Kind::Eaves)
         return fmt::format("the eaves of {:.3g} m of {} '{}'", line.thickness_m, count, line.symbol);
     const std::string where = line.atFaces ? fmt::format("at {} face{} of", count, one ? "" : "s")
@@ -161,7 +162,8 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
             others.emplace(file, number);
             continue;
         }
-        const bool one = line.parts == 1 && kind != lower::ThinPart::Kind::Eaves;
+        const bool one =
+            kind == lower::ThinPart::Kind::Rim || (line.parts == 1 && kind != lower::ThinPart::Kind::Eaves);
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", file, number),
              fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface{}: {} holds {}{}",

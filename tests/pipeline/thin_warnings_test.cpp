@@ -74,6 +74,19 @@ TEST(ThinWarnings, NameWhatStaysTornAtTheBoundOfTriangles) {
     EXPECT_NE(wall.warnings[0].text.find("takes too many triangles"), std::string::npos) << wall.warnings[0].text;
 }
 
+/// What stands out of a thick part has no thickness that its scope says: that of a torn strip was named, down to
+/// nothing.
+TEST(ThinWarnings, NameRimsWithoutAThickness) {
+    const Warned wall = warned(
+        "start A -> Wall size (60, 20, 10) turn 25deg\n"
+        "rule Wall -> cube + row 150 along x gap .2m { cube size (100%, 100%, 10.8m) }\n",
+        40, 3, 1);
+    const auto isOfRim = [](const MeshWarning& w) {
+        return w.text.starts_with("what shows of a 'cube' is too thin for the mesh's cells of ");
+    };
+    EXPECT_EQ(std::count_if(wall.warnings.begin(), wall.warnings.end(), isOfRim), 1);
+}
+
 /// The cells around the roof would have more than a million triangles, those around the rails few.
 TEST(ThinWarnings, NameWhatTakesMostTrianglesAlone) {
     const Warned house = warned(
