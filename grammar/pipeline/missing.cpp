@@ -117,6 +117,11 @@ std::string nameOf(const Line& line, lower::ThinPart::Kind kind) {
                        line.symbol);
 }
 
+bool isNamedAsOne(const Line& line, lower::ThinPart::Kind kind) {
+    using Kind = lower::ThinPart::Kind;
+    return kind == Kind::Rim || (line.parts == 1 && kind != Kind::Eaves);
+}
+
 /// The largest number of two digits that is no larger.
 double withTwoDigits(double value) {
     const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -162,8 +167,7 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
             others.emplace(file, number);
             continue;
         }
-        const bool one =
-            kind == lower::ThinPart::Kind::Rim || (line.parts == 1 && kind != lower::ThinPart::Kind::Eaves);
+        const bool one = isNamedAsOne(line, kind);
         warnings.push_back(
             {line.span, fmt::format("{}:{}: ", file, number),
              fmt::format("{} {} too thin for {} of {:.3g} m and lack{} {:.0f} % of the surface{}: {} holds {}{}",
