@@ -10,6 +10,7 @@
 #include <span>
 #include <tuple>
 
+#include "grammar/lower/off_surface.h"
 #include "grammar/lower/thin_cells.h"
 #include "grammar/lower/torn_eaves.h"
 #include "grammar/lower/torn_rims.h"
@@ -57,6 +58,7 @@ public:
         }
         auto eaves = hold(lower::findTornEaves);
         if (!eaves.ok()) return eaves;
+        if (const auto off = hold(lower::findOffSurface); !off.ok()) return off;
         if (halvingSeconds_ > seconds && !missing->empty()) missing = find(lower::findMissingParts, &*missing);
         if (!missing.ok()) return missing;
         const std::vector<lower::ThinPart> bounded = boundedParts();

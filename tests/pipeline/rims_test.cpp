@@ -1,11 +1,13 @@
-// Rims of round buildings and feet of turned ones: creases and corners there leave faces and cells.
+// Rims of round buildings, feet of turned ones and ledges: creases and corners there leave faces and cells.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "grammar/lower/off_surface.h"
 #include "modeler/core/conventions.h"
 #include "modeler/mesh/corners.h"
+#include "modeler/mesh/validate.h"
 #include "tests/pipeline/crisp_model.h"
 
 namespace sgm::pipeline {
@@ -77,6 +79,40 @@ TEST(Rims, OfPrismsHaveNoChamfers) {
     for (const mesh::Chunk& chunk : mesh.chunks)
         for (const Vec3f p : chunk.positions)
             EXPECT_GT(std::hypot(p.x, p.z), apothem_m - 1e-4) << p.x << ' ' << p.y << ' ' << p.z;
+}
+
+/// Two creases in one layer of cells: corners were chamfered, by up to a fifth of a cell, where the grid lay badly.
+TEST(Ledges, AreExactInCellsOfAnySize) {
+    const std::pair<const char*, size_t> piers[] = {
+        {"cube size (2.46m, .35m, 4.3m) move (0, 1m, 0)", 44},
+        {"cube size (1.23m, .35m, 4.3m) move (.615m, 1m, 0) + cube size (1.23m, .35m, 4.3m) move (-.615m, 1m, 0)", 76}};
+    for (const auto& [belt, most] : piers)
+        for (const int resolution : {17, 20, 24, 28, 31, 40}) {
+            const mesh::Mesh mesh =
+                usualMesh(fmt::format("start A -> cube size (2.16m, 10m, 4m) + {}\n", belt), resolution);
+            EXPECT_LE(mesh.triangleCount(), most) << belt << ' ' << resolution;
+            EXPECT_NEAR(mesh::measure(mesh).volume_m3, 86.4 + .35 * (2.46 * 4.3 - 2.16 * 4), 1e-4)
+                << belt << ' ' << resolution;
+        }
+}
+
+/// One of the tiers lies in one layer of cells, with both of its creases: chips stood out of it where its faces meet.
+TEST(Ledges, OfTiersHaveNoChips) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(
+        "grammar 2\nlet tiers = 14\nstart A -> size (96m, 10.1m, 74m) move (0, 5.05m, 0) Seats\n"
+        "rule Seats -> for k in 1..tiers { Tier with k = k }\n"
+        "rule Tier -> footprint round(72) offset (-.4m - (tiers - k) * .9m) Ring\n"
+        "rule Ring -> court 1.2m extrude (1.6m + k * .5m) block\n",
+        context);
+    const auto partsOff = [&](int halvings) {
+        const MeshedModel made = meshed(model, 177, halvings);
+        return lower::findOffSurface(model.derivation, *model.lowered, model.tape, made.mesh, made.grid.cell_m, 2,
+                                     nullptr)
+            ->size();
+    };
+    EXPECT_GE(partsOff(0), 1u);
+    EXPECT_EQ(partsOff(3), 0u);
 }
 
 /// A corner of the foot may lie beyond an edge of the slab between two cells: 8 triangles of the slab's top, 10 around

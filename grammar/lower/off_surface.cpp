@@ -1,0 +1,203 @@
+#include "grammar/lower/off_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "grammar/derive/boxes.h"
+#include "modeler/eval/evaluate.h"
+#include "modeler/eval/local_tapes.h"
+
+namespace sgm::lower {
+namespace {
+
+constexpr float offCells = 0.03f;  ///< from the surface: so far off a triangle's middle is wrong
+constexpr float boxCells = 8;      ///< of the cubes whose triangles are looked at together
+
+/// Triangles whose middles lie in a cube.
+struct Patch {
+    Vec3i index;
+    Box3f box;
+    std::vector<Vec3f> middles;
+    std::vector<OriginId> parts;
+    std::vector<float> off_m;  ///< by the field
+
+    Vec3d centre() const { return ((box.lo + box.hi) * 0.5f).as<double>(); }
+    uint64_t number() const {
+        return (static_cast<uint64_t>(index.x) & 0x1fffff) << 42 | (static_cast<uint64_t>(index.y) & 0x1fffff) << 21 |
+               (static_cast<uint64_t>(index.z) & 0x1fffff);
+    }
+};
+
+/// One worker's.
+class OffProber {
+public:
+    OffProber(const eval::Tape& tape, float cell_m) : tapes_(tape), cell_m_(cell_m) {}
+
+    Box3f boxOf(const Patch& patch) const { return patch.box.inflated(cell_m_); }
+    eval::LocalTapes& tapes() { return tapes_; }
+
+    void probe(std::span<Patch> patches, std::span<const Box3f> boxes) {
+        tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) {
+            Patch& patch = patches[i];
+            points_.clear();
+            for (const Vec3f& p : patch.middles) points_.add(p);
+            patch.off_m.resize(points_.size());
+            eval::evaluate(tape, points_.points(), patch.off_m.data(), tapes_.workspace());
+        });
+    }
+
+private:
+    eval::LocalTapes tapes_;
+    float cell_m_;
+    eval::PointList points_;
+};
+
+/// By vertex: where it belongs.
+std::vector<Vec3f> placesOf(const mesh::Mesh& mesh) {
+    std::vector<Vec3f> places;
+    places.reserve(mesh.vertexCount());
+    for (const mesh::Chunk& c : mesh.chunks) {
+        places.insert(places.end(), c.positions.begin(), c.positions.end());
+        for (const mesh::ConfinedVertex& v : c.confined) places[c.firstVertex + v.vertex] = v.place;
+    }
+    return places;
+}
+
+/// By vertex: whether it lies between two pieces.
+std::vector<bool> bordersOf(const mesh::Mesh& mesh) {
+    constexpr uint64_t unseen = ~uint64_t{0};
+    std::vector<uint64_t> pieces(mesh.vertexCount(), unseen);
+    std::vector<bool> areBorders(pieces.size());
+    for (const mesh::Chunk& c : mesh.chunks)
+        for (size_t t = 0; t < c.triangles.size(); ++t) {
+            const uint64_t piece = uint64_t{c.origins[t]} << 32 | c.labels[t];
+            const mesh::Triangle corners = c.inMesh(c.triangles[t]);
+            for (int k = 0; k < 3; ++k) {
+                uint64_t& known = pieces[corners[k]];
+                if (known == unseen) known = piece;
+                if (known != piece) areBorders[corners[k]] = true;
+            }
+        }
+    return areBorders;
+}
+
+/// How far a triangle's corners lie apart along a face's normal.
+float liesAcross(const std::array<Vec3f, 3>& corners, Vec3f normal) {
+    const float a = dot(corners[0], normal), b = dot(corners[1], normal), c = dot(corners[2], normal);
+    return std::max({a, b, c}) - std::min({a, b, c});
+}
+
+/// Of flat parts. A triangle in the plane of its face is right also where a round border cuts a corner of it off.
+std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::vector<bool>& areFlat) {
+    const std::vector<Vec3f> places = placesOf(mesh);
+    const std::vector<bool> areBorders = bordersOf(mesh);
+    std::map<uint64_t, size_t> numbers;
+    std::vector<Patch> patches;
+    const float perMetre = 1 / (boxCells * cell_m);
+    for (const mesh::Chunk& c : mesh.chunks) {
+        auto normal = c.cornerNormals.begin();
+        for (size_t t = 0; t < c.triangles.size(); ++t) {
+            if (!areFlat[c.origins[t]]) continue;
+            const mesh::Triangle corners = c.inMesh(c.triangles[t]);
+            if (areBorders[corners.x] + areBorders[corners.y] + areBorders[corners.z] < 2) continue;
+            const std::array<Vec3f, 3> triangle{places[corners.x], places[corners.y], places[corners.z]};
+            while (normal != c.cornerNormals.end() && normal->corner < 3 * t) ++normal;
+            const bool hasNormal = normal != c.cornerNormals.end() && normal->corner < 3 * t + 3;
+            if (hasNormal && liesAcross(triangle, normal->normal) <= offCells * cell_m) continue;
+            const Vec3f middle = (triangle[0] + triangle[1] + triangle[2]) * (1.0f / 3);
+            Patch at;
+            for (int axis = 0; axis < 3; ++axis) at.index[axis] = static_cast<int>(std::floor(middle[axis] * perMetre));
+            const auto [known, isNew] = numbers.emplace(at.number(), patches.size());
+            if (isNew) patches.push_back(at);
+            Patch& patch = patches[known->second];
+            patch.box = hull(patch.box, middle);
+            patch.middles.push_back(middle), patch.parts.push_back(c.origins[t]);
+        }
+    }
+    return patches;
+}
+
+/// By shape: whether flat faces of it bend, since it or one that holds it blends, morphs, is clad or displaced, or what
+/// follows one of them blends into it or morphs it.
+std::vector<bool> bentShapes(const derive::ShapeTree& tree) {
+    const auto bendsOthers = [&](derive::ShapeId s) {
+        return tree.shapes[s].op == rules::Operator::Morph || tree.shapes[s].blend_m > 0;
+    };
+    const auto isBent = [&](derive::ShapeId s) {
+        const derive::Extras* const extras = tree.extrasOf(s);
+        return bendsOthers(s) ||
+               (extras && (!extras->clad.empty() || !extras->displace.empty() || extras->relief != derive::none));
+    };
+    std::vector<bool> areBent(tree.shapes.size());
+    if (!areBent.empty()) areBent[0] = isBent(0);
+    std::vector<derive::ShapeId> children;
+    for (derive::ShapeId parent = 0; parent < tree.shapes.size(); ++parent) {
+        children.clear();
+        for (derive::ShapeId s = tree.shapes[parent].firstChild; s != derive::none; s = tree.shapes[s].nextSibling)
+            children.push_back(s);
+        bool bends = areBent[parent];
+        for (; !children.empty(); children.pop_back()) {
+            areBent[children.back()] = bends || isBent(children.back());
+            bends = bends || bendsOthers(children.back());
+        }
+        // A shape's own solid comes before its children.
+        areBent[parent] = areBent[parent] || bends;
+    }
+    return areBent;
+}
+
+/// By part: whether it has flat faces, and is among others, where those aren't null. Not mouldings and eaves, whose
+/// facets and wedges are finer than any cells: findTornEaves looks at these.
+std::vector<bool> flatParts(const derive::Derivation& derivation, const Model& model,
+                            const std::vector<ThinPart>* among) {
+    std::vector<bool> areWanted(model.shapeOf.size(), !among), areFlat(model.shapeOf.size());
+    if (among)
+        for (const ThinPart& part : *among) areWanted[part.part] = true;
+    const std::vector<bool> areBent = bentShapes(derivation.tree);
+    for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
+        const derive::ShapeId shape = model.shapeOf[part];
+        if (shape == derive::none || !areWanted[part] || areBent[shape]) continue;
+        const derive::SolidValue* const solid = derivation.tree.solidOf(shape);
+        const bool standsOut = solid && derive::standsOut_m(*solid, derivation.tree.shapes[shape].scope.size.y) > 0;
+        areFlat[part] = solid && solid->primitive && solid->primitive->hasFlatFaces && !standsOut;
+    }
+    return areFlat;
+}
+
+}  // namespace
+
+Result<std::vector<ThinPart>> findOffSurface(const derive::Derivation& derivation, const Model& model,
+                                             const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m, int threads,
+                                             Progress* progress, const std::vector<ThinPart>* among) {
+    std::vector<ThinPart> found;
+    const bool hasNoPieces = std::any_of(mesh.chunks.begin(), mesh.chunks.end(), [](const mesh::Chunk& c) {
+        return c.labels.size() != c.triangles.size() || c.origins.size() != c.triangles.size();
+    });
+    if (hasNoPieces) return found;
+    std::vector<Patch> patches = patchesOf(mesh, cell_m, flatParts(derivation, model, among));
+    eval::orderByPlace(std::span(patches));
+    eval::probeInGroups(
+        std::span(patches), threads, progress, "creases", [&] { return OffProber(tape, cell_m); },
+        [](OffProber& prober, std::span<Patch> some, std::span<const Box3f> boxes, size_t) {
+            prober.probe(some, boxes);
+        });
+    if (cancelled(progress)) return cancelledError();
+    std::map<OriginId, ThinPart> parts;
+    for (const Patch& patch : patches)
+        for (size_t k = 0; k < patch.off_m.size(); ++k) {  // none in an empty box
+            if (std::abs(patch.off_m[k]) <= offCells * cell_m) continue;
+            ThinPart& part = parts[patch.parts[k]];
+            const auto edge_m = static_cast<double>(cell_m);
+            part.places.push_back({patch.middles[k].as<double>(), {}, {edge_m, edge_m, edge_m}});
+        }
+    for (auto& [number, part] : parts) {
+        part.kind = ThinPart::Kind::Rim, part.part = number;
+        part.thickness_m = part.cell_m = static_cast<double>(cell_m) / 2;
+        found.push_back(std::move(part));
+    }
+    return found;
+}
+
+}  // namespace sgm::lower
