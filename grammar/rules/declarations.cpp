@@ -48,6 +48,17 @@ void checkDeclaredJoint(CheckContext& ctx, const syntax::TerminalDecl::JointDecl
     joints.push_back(std::move(joint));
 }
 
+/// What to write for a material of a name that isn't one; that of a terminal may stand in a file of the library.
+std::string hintForBase(const CheckContext& ctx, const syntax::TerminalDecl& decl, const std::string& name) {
+    const auto terminal = ctx.names.terminals.find(name);
+    if (terminal == ctx.names.terminals.end() || terminal->second->isMaterial)
+        return "name a material whose line stands before this one";
+    const syntax::Source* const source = terminal->second->span.source;
+    if (source == decl.span.source) return fmt::format("write 'material {0}' in place of 'terminal {0}'", name);
+    return fmt::format("it is a terminal of {}: write the look here, as 'material {} color #c8b090'", source->name(),
+                       decl.names.empty() ? "…" : decl.names[0].text);
+}
+
 void checkLook(CheckContext& ctx, const syntax::TerminalDecl& decl, Material& material, std::vector<Attribute>& open) {
     Place place(Place::Where::Look);
     Element none;
@@ -67,12 +78,8 @@ void checkLook(CheckContext& ctx, const syntax::TerminalDecl& decl, Material& ma
         if (isMaterial && value->kind == Value::Kind::Word) {  // of: the look of a material declared above
             const SymbolId base = findMaterial(ctx.grammar, value->text);
             if (base == rules::none || ctx.grammar.symbols[base].material == rules::none || !fold(a.args[0], {})) {
-                const auto terminal = ctx.names.terminals.find(value->text);
-                const bool isTerminal = terminal != ctx.names.terminals.end() && !terminal->second->isMaterial;
                 ctx.diagnostics.error(a.span, fmt::format("'{}' is no material declared above", value->text),
-                                      isTerminal
-                                          ? fmt::format("write 'material {0}' in place of 'terminal {0}'", value->text)
-                                          : "name a material whose line stands before this one");
+                                      hintForBase(ctx, decl, value->text));
                 continue;
             }
             const std::string name = material.name;
