@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "grammar/derive/boxes.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/eval/local_tapes.h"
+#include "modeler/mesh/one_chunk.h"
 
 namespace sgm::lower {
 namespace {
@@ -84,7 +86,7 @@ std::vector<bool> bordersOf(const mesh::Mesh& mesh) {
 }
 
 /// How far a triangle's corners lie apart along a face's normal.
-float liesAcross(const std::array<Vec3f, 3>& corners, Vec3f normal) {
+float extentAlong(Vec3f normal, const std::array<Vec3f, 3>& corners) {
     const float a = dot(corners[0], normal), b = dot(corners[1], normal), c = dot(corners[2], normal);
     return std::max({a, b, c}) - std::min({a, b, c});
 }
@@ -96,16 +98,13 @@ std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::ve
     std::map<uint64_t, size_t> numbers;
     std::vector<Patch> patches;
     const float perMetre = 1 / (boxCells * cell_m);
-    for (const mesh::Chunk& c : mesh.chunks) {
-        auto normal = c.cornerNormals.begin();
-        for (size_t t = 0; t < c.triangles.size(); ++t) {
-            if (!areFlat[c.origins[t]]) continue;
+    for (const mesh::Chunk& c : mesh.chunks)
+        mesh::visitTriangles(c, [&](uint32_t t, std::span<const mesh::CornerNormal> normals) {
+            if (!areFlat[c.origins[t]]) return;
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
-            if (areBorders[corners.x] + areBorders[corners.y] + areBorders[corners.z] < 2) continue;
+            if (areBorders[corners.x] + areBorders[corners.y] + areBorders[corners.z] < 2) return;
             const std::array<Vec3f, 3> triangle{places[corners.x], places[corners.y], places[corners.z]};
-            while (normal != c.cornerNormals.end() && normal->corner < 3 * t) ++normal;
-            const bool hasNormal = normal != c.cornerNormals.end() && normal->corner < 3 * t + 3;
-            if (hasNormal && liesAcross(triangle, normal->normal) <= offCells * cell_m) continue;
+            if (!normals.empty() && extentAlong(normals[0].normal, triangle) <= offCells * cell_m) return;
             const Vec3f middle = (triangle[0] + triangle[1] + triangle[2]) * (1.0f / 3);
             Patch at;
             for (int axis = 0; axis < 3; ++axis) at.index[axis] = static_cast<int>(std::floor(middle[axis] * perMetre));
@@ -114,8 +113,7 @@ std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::ve
             Patch& patch = patches[known->second];
             patch.box = hull(patch.box, middle);
             patch.middles.push_back(middle), patch.parts.push_back(c.origins[t]);
-        }
-    }
+        });
     return patches;
 }
 

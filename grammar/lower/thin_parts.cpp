@@ -162,7 +162,7 @@ private:
                 continue;
             }
             if (exposedShare(candidate, axis, tape, roughly) < leastRoughly) continue;
-            // Points that lie closer see what of the borders is buried, as of a door's leaf in its frame.
+            // Points that lie closer see what of the borders is buried, as of a door in its frame.
             if (lackedOfFace(candidate, axis, covered, tape, closely) > 0)
                 most = std::max(most, lackedOfFace(candidate, axis, covered, tape, atBorders));
         }

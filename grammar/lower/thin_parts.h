@@ -25,11 +25,14 @@ struct ThinPart {
     /// Share of the part's surface without a triangle within half a cell, or of a plate's area; of lines across the
     /// wall or gap with neither of its surfaces. 0 where that is too little to be told, but worth halved cells.
     double missing = 0;
-    std::vector<derive::Scope> places;  ///< where it is
+    std::vector<derive::Scope> places;  ///< where it is, of walls from both of their sides
     bool isShell = false;               ///< of a part: its walls are what is thin
     int halvings = 0;                   ///< cells around it may be halved so often
     size_t mostTriangles = 0;           ///< that the mesh may come to have by that, or four times those that it has
     bool isBounded = false;             ///< cells there would be halved more often if that took fewer triangles
+
+    /// Whether its places were found along lines across it.
+    bool isWall() const { return isShell || kind == Kind::Wall; }
 };
 
 /// Looks at the parts whose scope is somewhere thinner than a cell: on lines through the scope along its thin axes,

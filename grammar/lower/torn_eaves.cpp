@@ -32,14 +32,14 @@ constexpr double deepest = 3;                     ///< overhangs below a roof's 
 /// What stands out beyond an edge of a plan.
 struct Eave {
     derive::Scope scope;                           ///< x along the edge, y up, z outward
-    std::vector<SurfaceLines::Bracket> crossings;  ///< of upright lines through it with the roof's own surface
+    std::vector<SurfaceLines::Bracket> crossings;  ///< of upright lines through it with the solid's own surface
 };
 
-/// A roof with an overhang or a moulding, where it stands on hills.
-struct Roof {
+/// What stands out of a solid over a plan, a roof's eaves or a moulding, where it stands on hills.
+struct Overhang {
     OriginId part = 0;
     derive::Scope scope;
-    double overhang_m = 0;
+    double out_m = 0;
     bool isMoulding = false;
     bool hasBoard = false;  ///< else the eaves are wedges
     std::vector<Eave> eaves;
@@ -57,17 +57,17 @@ public:
     EaveProber(const eval::Tape& tape, const Box3f& bounds, float cell_m)
         : tapes_(tape), surface_(bounds, cell_m), cell_m_(static_cast<double>(cell_m)) {}
 
-    Box3f boxOf(const Roof& roof) const {
+    Box3f boxOf(const Overhang& overhang) const {
         Box3d box;
-        for (const Eave& eave : roof.eaves) box = hull(box, derive::boxOf(eave.scope, lineReach));
+        for (const Eave& eave : overhang.eaves) box = hull(box, derive::boxOf(eave.scope, lineReach));
         return box.as<float>();
     }
     eval::LocalTapes& tapes() { return tapes_; }
 
-    void probe(std::span<Roof> roofs, std::span<const Box3f> boxes) {
+    void probe(std::span<Overhang> overhangs, std::span<const Box3f> boxes) {
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) {
-            for (Eave& eave : roofs[i].eaves) {
-                surface_.findOnLines(linesThrough(eave.scope), roofs[i].part, tape, tapes_.workspace());
+            for (Eave& eave : overhangs[i].eaves) {
+                surface_.findOnLines(linesThrough(eave.scope), overhangs[i].part, tape, tapes_.workspace());
                 eave.crossings.assign(surface_.found().begin(), surface_.found().end());
             }
         });
@@ -94,8 +94,8 @@ private:
 };
 
 /// Counts where the mesh is away from an eave's surface.
-void compare(const Eave& eave, const Presence& presence, Roof& roof) {
-    /// What a line meets of the roof.
+void compare(const Eave& eave, const Presence& presence, Overhang& overhang) {
+    /// What a line meets of the solid.
     struct Crossed {
         size_t points = 0, away = 0;
         double low_m = std::numeric_limits<double>::max(), high_m = std::numeric_limits<double>::lowest();
@@ -104,23 +104,23 @@ void compare(const Eave& eave, const Presence& presence, Roof& roof) {
     for (const SurfaceLines::Bracket& b : eave.crossings) {
         Crossed& line = lines[b.line];
         const double height_m = dot(b.middle() - eave.scope.centre, eave.scope.axes.y);
-        ++line.points, line.away += presence.isNear(b.middle().as<float>(), roof.part) ? 0 : 1;
+        ++line.points, line.away += presence.isNear(b.middle().as<float>(), overhang.part) ? 0 : 1;
         line.low_m = std::min(line.low_m, height_m), line.high_m = std::max(line.high_m, height_m);
     }
     double low_m = eave.scope.size.y, high_m = -eave.scope.size.y;
     size_t away = 0;
     for (const auto& [number, line] : lines) {
         if (line.points < 2) continue;  // it lies on a cornice, or is cut off
-        roof.points += line.points, away += line.away;
+        overhang.points += line.points, away += line.away;
         low_m = std::min(low_m, line.low_m), high_m = std::max(high_m, line.high_m);
-        if (line.away > 0) roof.thicknesses_m.push_back(line.high_m - line.low_m);
+        if (line.away > 0) overhang.thicknesses_m.push_back(line.high_m - line.low_m);
     }
     if (away == 0) return;
-    roof.away += away;
+    overhang.away += away;
     derive::Scope place = eave.scope;
     place.centre += place.axes.y * (0.5 * (low_m + high_m));
     place.size.y = high_m - low_m;
-    roof.places.push_back(place);
+    overhang.places.push_back(place);
 }
 
 /// Of a parameter; 0 where the solid has none of that name.
@@ -133,27 +133,27 @@ double argumentOf(const derive::SolidValue& solid, const field::PrimitiveParamet
 }
 
 /// Boxes around what stands out beyond each edge of the plan.
-std::vector<Eave> eavesOf(const derive::Scope& scope, const derive::Footprints& footprints, double overhang_m,
+std::vector<Eave> eavesOf(const derive::Scope& scope, const derive::Footprints& footprints, double out_m,
                           double drop_m) {
     std::vector<Eave> eaves;
     for (const plan::PlacedEdge& e : plan::edgesOf(derive::footprintOf(scope, footprints))) {
-        const plan::Vec2 out = e.normal(), middle = (e.from + e.to) * 0.5 + out * (0.5 * overhang_m);
+        const plan::Vec2 out = e.normal(), middle = (e.from + e.to) * 0.5 + out * (0.5 * out_m);
         derive::Scope eave;
         eave.centre = scope.centre + scope.axes * Vec3d{middle.x, -0.5 * drop_m, middle.z};
         eave.axes = scope.axes * Mat3{{out.z, 0, -out.x}, {0, 1, 0}, {out.x, 0, out.z}};
-        eave.size = {e.length() + 2 * overhang_m, scope.size.y + drop_m, overhang_m};
+        eave.size = {e.length() + 2 * out_m, scope.size.y + drop_m, out_m};
         eaves.push_back({eave, {}});
     }
     return eaves;
 }
 
-std::vector<Roof> roofsOf(const derive::Derivation& derivation, const Model& model, double cell_m,
-                          const std::vector<ThinPart>* among) {
+std::vector<Overhang> overhangsOf(const derive::Derivation& derivation, const Model& model, double cell_m,
+                                  const std::vector<ThinPart>* among) {
     std::vector<bool> isWanted(model.shapeOf.size(), !among);
     if (among)
         for (const ThinPart& part : *among) isWanted[part.part] = true;
     const std::vector<bool> cuts = cutters(derivation.tree.shapes);
-    std::vector<Roof> roofs;
+    std::vector<Overhang> overhangs;
     for (OriginId part = 1; part < model.shapeOf.size(); ++part) {
         const derive::ShapeId id = model.shapeOf[part];
         if (id == derive::none || !isWanted[part] || cuts[id]) continue;
@@ -166,32 +166,32 @@ std::vector<Roof> roofsOf(const derive::Derivation& derivation, const Model& mod
         const derive::Scope scope = derive::liftedScope(derivation, id);
         const bool hasBoard = isMoulding || argumentOf(solid, field::plan_parameters::fascia) > 0;
         const double drop_m = isMoulding ? 0 : deepest * out_m;
-        roofs.push_back({part,
-                         scope,
-                         out_m,
-                         isMoulding,
-                         hasBoard,
-                         eavesOf(scope, derivation.tree.footprints, out_m, drop_m),
-                         0,
-                         0,
-                         {},
-                         {}});
+        overhangs.push_back({part,
+                             scope,
+                             out_m,
+                             isMoulding,
+                             hasBoard,
+                             eavesOf(scope, derivation.tree.footprints, out_m, drop_m),
+                             0,
+                             0,
+                             {},
+                             {}});
     }
-    return roofs;
+    return overhangs;
 }
 
-/// What the mesh lacks of a roof's eaves.
-std::optional<ThinPart> tornOf(Roof& roof, double cell_m) {
-    const double share = static_cast<double>(roof.away) / static_cast<double>(roof.points);
-    if (roof.away < fewestTorn || share < (roof.hasBoard ? leastTorn : leastTornWedge)) return std::nullopt;
-    std::vector<double>& sizes_m = roof.thicknesses_m;
+/// What the mesh lacks of eaves, or of a moulding.
+std::optional<ThinPart> tornOf(Overhang& overhang, double cell_m) {
+    const double share = static_cast<double>(overhang.away) / static_cast<double>(overhang.points);
+    if (overhang.away < fewestTorn || share < (overhang.hasBoard ? leastTorn : leastTornWedge)) return std::nullopt;
+    std::vector<double>& sizes_m = overhang.thicknesses_m;
     std::sort(sizes_m.begin(), sizes_m.end());
     const auto at = [&](double rank) {
         return sizes_m[static_cast<size_t>(rank * static_cast<double>(sizes_m.size()))];
     };
-    const auto kind = roof.isMoulding ? ThinPart::Kind::Part : ThinPart::Kind::Eaves;
-    ThinPart torn{.kind = kind, .part = roof.part, .places = std::move(roof.places)};
-    const double most_m = roof.isMoulding ? roof.overhang_m : std::numeric_limits<double>::max();
+    const auto kind = overhang.isMoulding ? ThinPart::Kind::Part : ThinPart::Kind::Eaves;
+    ThinPart torn{.kind = kind, .part = overhang.part, .places = std::move(overhang.places)};
+    const double most_m = overhang.isMoulding ? overhang.out_m : std::numeric_limits<double>::max();
     torn.thickness_m = std::min(at(0.75), most_m), torn.cell_m = std::min({at(0.5), most_m, cell_m / 2});
     torn.missing = share;
     return torn;
@@ -206,27 +206,27 @@ Result<std::vector<ThinPart>> findTornEaves(const derive::Derivation& derivation
                                             Progress* progress, const std::vector<ThinPart>* among) {
     std::vector<ThinPart> torn;
     if (mesh.hasPositionsOnly()) return torn;
-    std::vector<Roof> roofs = roofsOf(derivation, model, static_cast<double>(cell_m), among);
-    if (roofs.empty()) return torn;
-    eval::orderByPlace(std::span(roofs));
+    std::vector<Overhang> overhangs = overhangsOf(derivation, model, static_cast<double>(cell_m), among);
+    if (overhangs.empty()) return torn;
+    eval::orderByPlace(std::span(overhangs));
     eval::probeInGroups(
-        std::span(roofs), threads, progress, "eaves", [&] { return EaveProber(tape, model.field.bounds, cell_m); },
-        [](EaveProber& prober, std::span<Roof> some, std::span<const Box3f> boxes, size_t) {
+        std::span(overhangs), threads, progress, "eaves", [&] { return EaveProber(tape, model.field.bounds, cell_m); },
+        [](EaveProber& prober, std::span<Overhang> some, std::span<const Box3f> boxes, size_t) {
             prober.probe(some, boxes);
         });
     if (cancelled(progress)) return cancelledError();
     std::vector<Presence::Query> queries(model.shapeOf.size());
     std::vector<Vec3f> points;
-    for (const Roof& roof : roofs) {
-        queries[roof.part] = {Presence::Query::Extent::NearPoints,
-                              std::min(reachOfCell * cell_m, reachOfOverhang * static_cast<float>(roof.overhang_m))};
-        for (const Eave& eave : roof.eaves)
+    for (const Overhang& overhang : overhangs) {
+        queries[overhang.part] = {Presence::Query::Extent::NearPoints,
+                                  std::min(reachOfCell * cell_m, reachOfOverhang * static_cast<float>(overhang.out_m))};
+        for (const Eave& eave : overhang.eaves)
             for (const SurfaceLines::Bracket& b : eave.crossings) points.push_back(b.middle().as<float>());
     }
     const Presence presence(mesh, queries, points, cell_m);
-    for (Roof& roof : roofs) {
-        for (const Eave& eave : roof.eaves) compare(eave, presence, roof);
-        if (auto found = tornOf(roof, static_cast<double>(cell_m))) torn.push_back(std::move(*found));
+    for (Overhang& overhang : overhangs) {
+        for (const Eave& eave : overhang.eaves) compare(eave, presence, overhang);
+        if (auto found = tornOf(overhang, static_cast<double>(cell_m))) torn.push_back(std::move(*found));
     }
     std::sort(torn.begin(), torn.end(), [](const ThinPart& a, const ThinPart& b) { return a.part < b.part; });
     return torn;

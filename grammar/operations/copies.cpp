@@ -40,13 +40,12 @@ std::shared_ptr<Parts> checkCopies(OperationChecker& checker, const syntax::Attr
     out->span = written.span;
     out->operation = written.operation;
     checker.beginDraws(std::string(written.operation->name));
-    if (counts && !written.args.empty() && written.args[0].kind == syntax::Expr::Kind::Number &&
-        written.args[0].number == 0)
-        checker.error(written.args[0].span, fmt::format("'{}' makes no copy", written.operation->name),
-                      "write 1 or more");
-    if (counts && !written.args.empty())
-        out->args.push_back(
-            checker.expression(written.args[0], Want::Count, fmt::format("'{}'", written.operation->name)));
+    if (counts && !written.args.empty()) {
+        const syntax::Expr& count = written.args[0];
+        if (count.kind == syntax::Expr::Kind::Number && count.number == 0)
+            checker.error(count.span, fmt::format("'{}' makes no copy", written.operation->name), "write 1 or more");
+        out->args.push_back(checker.expression(count, Want::Count, fmt::format("'{}'", written.operation->name)));
+    }
     Parts::Part& part = out->parts.emplace_back();
     part.span = written.span;
     checker.withLocal("i", part.local, [&] {

@@ -174,8 +174,7 @@ private:
             int& tried = tried_[placeOf(part)];
             tried = std::max(wish.halvings, halvingsIn(around));
             // Places of walls overlap, for they are found along all axes.
-            const bool isWall = part.isShell || part.kind == lower::ThinPart::Kind::Wall;
-            const double triangles = isWall ? 0 : trianglesOfPart(part, static_cast<double>(grid_.cell_m));
+            const double triangles = part.isWall() ? 0 : trianglesOfPart(part, static_cast<double>(grid_.cell_m));
             asked[static_cast<size_t>(tried)].push_back({placeOf(part), around.list(), triangles});
         }
         return asked;

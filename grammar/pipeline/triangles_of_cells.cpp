@@ -8,7 +8,7 @@ double trianglesOfPart(const lower::ThinPart& part, double cell_m) {
     constexpr double cellsPerArea = 1.5;  // that a slanted plate meets, where it meets one along the grid
     constexpr double eachCell = 2;
     // Places of walls are found from both sides.
-    const double sides = part.isShell || part.kind == lower::ThinPart::Kind::Wall ? 1 : 2;
+    const double sides = part.isWall() ? 1 : 2;
     double area_m2 = 0;  // from one side
     for (const derive::Scope& place : part.places)
         area_m2 += place.size.x * place.size.y * place.size.z / minComponent(place.size);

@@ -46,7 +46,7 @@ TEST(ThinWarnings, SayThatHalvingEndsAtTheBoundOfTriangles) {
 }
 
 /// The points that told how much of its faces is free missed 5 cm at each side that lie in the wall.
-TEST(ThinWarnings, DontNameALeafWhoseSidesAreInItsWall) {
+TEST(ThinWarnings, DontNameADoorWhoseSidesAreInItsWall) {
     const std::string text =
         "start A -> cube size (40, 1, 34) + Wall size (6m, 5m, .6m) turn 33deg move (0, 3m, 0)\n"
         "rule Wall -> cube - cube size (1.4m, 2.4m, 200%) move (0, -.9m, 0)\n"
