@@ -4,7 +4,8 @@ set -eu
 packages="g++ cmake ninja-build ccache pkg-config
   libopenvdb-dev libboost-iostreams-dev libopenmesh-dev libcgal-dev libpolyclipping-dev libtbb-dev libxsimd-dev libfmt-dev
   nlohmann-json3-dev libsimdjson-dev libtinygltf-dev libstb-dev libmeshoptimizer-dev libdraco-dev libcli11-dev libcpp-httplib-dev libpng-dev libjpeg62-turbo-dev libtiff-dev zlib1g-dev libopenexr-dev libepoxy-dev libegl-dev libglfw3-dev libimgui-dev libfreetype-dev fonts-roboto-unhinted fonts-hack-ttf libegl1 libgl1-mesa-dri
-  libgtest-dev libgmock-dev glslang-tools universal-ctags xvfb xdotool libopenvdb-tools"
+  libgtest-dev libgmock-dev glslang-tools universal-ctags xvfb xdotool libopenvdb-tools
+  pybind11-dev python3-numpy python3-venv python3-wheel patchelf"
 
 install_missing() {
   missing=""
