@@ -105,6 +105,16 @@ void correctNormals(Mesh& mesh) {
     }
 }
 
+void rotate(Mesh& mesh, const Mat3& rotation) {
+    const auto turn = [&](Vec3f& v) { v = (rotation * v.as<double>()).as<float>(); };
+    for (Chunk& chunk : mesh.chunks) {
+        std::for_each(chunk.positions.begin(), chunk.positions.end(), turn);
+        std::for_each(chunk.normals.begin(), chunk.normals.end(), turn);
+        for (CornerNormal& own : chunk.cornerNormals) turn(own.normal);
+        for (ConfinedVertex& vertex : chunk.confined) turn(vertex.place);
+    }
+}
+
 void turnInsideOut(Mesh& mesh) {
     for (Chunk& chunk : mesh.chunks) {
         for (Triangle& t : chunk.triangles) std::swap(t.y, t.z);

@@ -1,6 +1,6 @@
-// Editing a mesh: smoothing and decimation through OpenMesh, which keep it closed and keep its origins, and turning it
-// inside out.
-// Enters: a Mesh. Leaves: a Mesh, of one chunk when OpenMesh made it. Assumes a closed manifold mesh from polygonize.
+// Editing a mesh: smoothing and decimation through OpenMesh, which keep it closed and keep its origins; rotating it,
+// and turning it inside out. Enters: a Mesh. Leaves: a Mesh, of one chunk when OpenMesh made it. Assumes a closed
+// manifold mesh from polygonize.
 #pragma once
 
 #include "modeler/core/progress.h"
@@ -22,6 +22,9 @@ Result<Mesh> decimate(const Mesh& mesh, double ratio, Progress* progress);
 /// tie margin (Tape::tieMargin) that of the other. Slivers have no direction to go by: there it is 90 degrees.
 /// O(triangles).
 void correctNormals(Mesh& mesh);
+
+/// Rotates the mesh about the origin. O(vertices).
+void rotate(Mesh& mesh, const Mat3& rotation);
 
 /// Turns the surface round: triangles are wound and normals point the other way, as for a room seen from inside.
 void turnInsideOut(Mesh& mesh);

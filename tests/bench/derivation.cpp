@@ -10,12 +10,12 @@
 
 #include "grammar/derive/lsystem.h"
 #include "grammar/lower/lower.h"
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/load.h"
+#include "grammar/pipeline/meshing.h"
 #include "grammar/rules/params.h"
 #include "modeler/core/conventions.h"
 #include "modeler/eval/tape.h"
-#include "modeler/mesh/polygonize.h"
-#include "modeler/mesh/subdivide.h"
 #include "tests/bench/stopwatch.h"
 #include "tests/scratch.h"
 
@@ -89,16 +89,14 @@ Result<double> least(
     return seconds;
 }
 
-Result<double> meshTime(const eval::Tape& tape, const field::Field& field, float cell_m, int repeats) {
-    const mesh::Grid grid = mesh::gridFor(field.bounds, cell_m);
+/// Of the crisp mesh without halved cells, as makeMesh makes it.
+Result<double> meshTime(const pipeline::Model& model, float cell_m, int repeats) {
+    const mesh::PolygonizeOptions options{.surface = mesh::Surface::Crisp, .halvings = 0};
     return least(repeats, [&]() -> Status {
-        mesh::Counts counts;
-        const auto blocks = mesh::subdivide(tape, grid, 1, nullptr, counts);
-        if (!blocks.ok()) return blocks.error();
-        mesh::PolygonizeOptions options;
-        options.threads = 1;
-        const auto mesh = mesh::polygonize(*blocks, grid, options, nullptr, counts);
-        return mesh.ok() ? Status(Done{}) : mesh.error();
+        pipeline::Context context{nullptr, 1, {}};
+        const mesh::Grid grid = pipeline::gridOver(model, {.cell_m = static_cast<double>(cell_m)}, options.surface);
+        const auto made = pipeline::makeMesh(model, grid, options, context);
+        return made.ok() ? Status(Done{}) : made.error();
     });
 }
 
@@ -142,7 +140,8 @@ Result<WallCosts> measureWall(const WallCase& what) {
     });
     costs.tape = tape->size();
     if (!what.isMeshed) return costs;
-    const auto meshed = meshTime(*tape, model->field, static_cast<float>(what.width_m / resolution), 3);
+    const pipeline::Model whole{std::move(*derivation), std::move(model), std::move(*tape)};
+    const auto meshed = meshTime(whole, static_cast<float>(what.width_m / resolution), 3);
     if (!meshed.ok()) return meshed.error();
     costs.mesh_s = *meshed;
     return costs;

@@ -44,6 +44,13 @@ inline Model modelOf(const std::string& text, Context& context) {
     return std::move(*model);
 }
 
+/// The model as one whose mesh isn't made in the axes of its walls, but across the grid, as those of parts are that
+/// stand otherwise than most.
+inline Model acrossGrid(Model model) {
+    model.isCutOpen = true;
+    return model;
+}
+
 /// `resolution` cells along the longest side, halved up to `halvings` times around thin parts, to so many triangles; on
 /// two threads.
 inline MeshedModel meshed(const Model& model, int resolution, int halvings = 3,
@@ -56,13 +63,16 @@ inline MeshedModel meshed(const Model& model, int resolution, int halvings = 3,
     return std::move(*made);
 }
 
-/// The same with the model of a text. A text with errors fails the test, and the program ends.
-inline CrispModel crispModel(const std::string& text, int resolution, Context& context, int halvings = 3) {
-    Model model = modelOf(text, context);
+/// The same of any model.
+inline CrispModel crispModel(Model model, int resolution, Context& context, int halvings = 3) {
     const mesh::Grid grid = gridOf(model, resolution);
     auto meshed = makeMesh(model, grid, {.surface = mesh::Surface::Crisp, .halvings = halvings}, context);
-    EXPECT_TRUE(meshed.ok()) << text;
+    EXPECT_TRUE(meshed.ok());
     return {std::move(model), grid, std::move(meshed->mesh)};
+}
+/// The same with the model of a text. A text with errors fails the test, and the program ends.
+inline CrispModel crispModel(const std::string& text, int resolution, Context& context, int halvings = 3) {
+    return crispModel(modelOf(text, context), resolution, context, halvings);
 }
 
 }  // namespace sgm::pipeline

@@ -307,11 +307,11 @@ TEST(Refining, TurnedWallsWithOpeningsAreWholeOrNamed) {
     for (const int resolution : {40, 64, 96})
         for (int degrees = 0; degrees <= 90; degrees += 5) {
             Context context{nullptr, 2};
-            const Model model = modelOf("grammar 2\nstart A -> size (30, 4.5, .6) turn " + std::to_string(degrees) +
-                                            "deg Arcade\n"
-                                            "rule Arcade -> split x { { ~3m: Arch }* }\n"
-                                            "rule Arch -> cube - cube size (2m, 4m, 300%) move (0, -.25m, 0)\n",
-                                        context);
+            const std::string text = "grammar 2\nstart A -> size (30, 4.5, .6) turn " + std::to_string(degrees) +
+                                     "deg Arcade\n"
+                                     "rule Arcade -> split x { { ~3m: Arch }* }\n"
+                                     "rule Arch -> cube - cube size (2m, 4m, 300%) move (0, -.25m, 0)\n";
+            const Model model = acrossGrid(modelOf(text, context));
             MeshedModel made = meshed(model, resolution, 3);
             if (!made.missing->empty()) continue;
             const auto whole =

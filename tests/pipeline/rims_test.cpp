@@ -16,7 +16,7 @@ namespace {
 /// The usual mesh of a grammar 2 text.
 mesh::Mesh usualMesh(const std::string& text, int resolution) {
     Context context{nullptr, 2};
-    CrispModel made = crispModel("grammar 2\n" + text, resolution, context);
+    CrispModel made = crispModel(acrossGrid(modelOf("grammar 2\n" + text, context)), resolution, context);
     return made.edit({}, context).value();
 }
 

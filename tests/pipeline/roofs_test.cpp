@@ -17,9 +17,9 @@ namespace {
 
 Model houseWith(const std::string& roof, const std::string& turn = {}) {
     Context context{nullptr, 2};
-    return modelOf("grammar 2\nstart A -> footprint rect(16, 9) extrude 4m House" + turn + "\nrule House -> cube + " +
-                       roof + " at +y\n",
-                   context);
+    return acrossGrid(modelOf("grammar 2\nstart A -> footprint rect(16, 9) extrude 4m House" + turn +
+                                  "\nrule House -> cube + " + roof + " at +y\n",
+                              context));
 }
 
 const std::string turned = " turn (0, 25deg, 0)";

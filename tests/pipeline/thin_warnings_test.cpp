@@ -22,7 +22,7 @@ struct Warned {
 Warned warned(const std::string& text, int resolution, int halvings = 3,
               size_t triangles = mesh::PolygonizeOptions{}.halvedTriangles) {
     Context context{nullptr, 2};
-    Model model = modelOf("grammar 2\n" + text, context);
+    Model model = acrossGrid(modelOf("grammar 2\n" + text, context));
     MeshedModel made = meshed(model, resolution, halvings, triangles);
     const auto missing = findMissingParts(model, made, 2, nullptr);
     EXPECT_TRUE(missing.ok());

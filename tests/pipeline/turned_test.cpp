@@ -1,0 +1,87 @@
+// Models whose walls stand across the grid: their meshes are those of models that stand along it.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "grammar/derive/turn.h"
+#include "modeler/core/conventions.h"
+#include "modeler/core/packages.h"
+#include "modeler/mesh/edit.h"
+#include "tests/pipeline/crisp_model.h"
+
+namespace sgm::pipeline {
+namespace {
+
+std::string houseText(double turn_deg, const std::string& more = {}) {
+    return fmt::format(
+        "grammar 2\nterminal wall color #c0a080\nterminal trim color #a04030\n"
+        "start S -> size (8m, 5m, 6m) turn {}deg move (3m, 0, 1m) House{}\n"
+        "rule House -> wall + trim size (102%, .3m, 102%) at +y - trim size (1m, 2m, 2m) move (1m, 0, 3m)\n",
+        turn_deg, more);
+}
+
+double facing_deg(const std::string& text) {
+    Context context;
+    return derive::facingOf(modelOf(text, context).derivation) * 180 / pi;
+}
+
+TEST(Turned, FacingIsThatOfMostWalls) {
+    EXPECT_EQ(facing_deg(houseText(0)), 0);
+    EXPECT_EQ(facing_deg(houseText(90)), 0);
+    EXPECT_NEAR(facing_deg(houseText(30)), 30, 1e-9);
+    EXPECT_NEAR(facing_deg(houseText(110)), 20, 1e-9);
+    EXPECT_NEAR(facing_deg(houseText(-200)), -20, 1e-9);
+    const std::string block = "grammar 2\nterminal a\nstart S -> size (10m, 4m, 10m) B\n";
+    // A square that is turned within its scope, and an octagon, of which no direction has more than half.
+    EXPECT_NEAR(facing_deg(block + "rule B -> footprint outline((50%, 0%), (100%, 50%), (50%, 100%), (0%, 50%)) a\n"),
+                45, 1e-4);
+    EXPECT_EQ(facing_deg(block + "rule B -> footprint ngon(8) a\n"), 0);
+    EXPECT_EQ(facing_deg(block + "rule B -> a + a turn 30deg move (20m, 0, 0)\n"), 0);
+}
+
+TEST(Turned, MeshIsThatOfTheStraightModel) {
+    Context context{nullptr, 2};
+    CrispModel turned = crispModel(houseText(25), 48, context);
+    const Model straight = modelOf(houseText(0), context);
+    const mesh::Grid grid =
+        gridOver(straight, {.cell_m = static_cast<double>(turned.grid.cell_m)}, mesh::Surface::Crisp);
+    auto made = makeMesh(straight, grid, {.surface = mesh::Surface::Crisp}, context);
+    ASSERT_TRUE(made.ok());
+    mesh::rotate(made->mesh, Mat3::rotation({0, 1, 0}, 25 * pi / 180));
+    ASSERT_EQ(turned.mesh.triangleCount(), made->mesh.triangleCount());
+    ASSERT_EQ(turned.mesh.chunks.size(), made->mesh.chunks.size());
+    // The start's place isn't turned with it.
+    const Vec3f shift = turned.mesh.chunks[0].positions[0] - made->mesh.chunks[0].positions[0];
+    float farthest = 0;
+    for (size_t c = 0; c < made->mesh.chunks.size(); ++c) {
+        const mesh::Chunk &a = turned.mesh.chunks[c], &b = made->mesh.chunks[c];
+        ASSERT_EQ(a.positions.size(), b.positions.size());
+        for (size_t i = 0; i < a.positions.size(); ++i)
+            farthest = std::max(farthest, length(a.positions[i] - b.positions[i] - shift));
+    }
+    EXPECT_LT(farthest, 1e-4f);
+}
+
+TEST(Turned, LevelSetStandsAlongTheGrid) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(houseText(25), context);
+    const mesh::Grid grid = gridOf(model, 32);
+    const auto made = makeMesh(model, grid, {.surface = mesh::Surface::Crisp}, context);
+    ASSERT_TRUE(made.ok());
+    EXPECT_TRUE(made->blocks.empty());
+    EXPECT_EQ(made->grid.cell_m, grid.cell_m);
+    if (!isBuiltWith(Package::OpenVdb)) return;
+    EXPECT_TRUE(levelSet(model, *made, context).ok());
+}
+
+TEST(Turned, OtherModelsStayAsTheyStand) {
+    Context context{nullptr, 2};
+    const Model model = modelOf(houseText(25), context);
+    const mesh::Grid grid = gridOf(model, 32);
+    const auto cubes = makeMesh(model, grid, {.surface = mesh::Surface::Cubes}, context);
+    ASSERT_TRUE(cubes.ok());
+    EXPECT_FALSE(cubes->blocks.empty());  // the paper's marching cubes
+}
+
+}  // namespace
+}  // namespace sgm::pipeline
