@@ -37,13 +37,14 @@ Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, Mes
                             const mesh::Scene& scene, Context& context) {
     keepOnly(request.edits.keep, meshed, request.grid.threads, request.quiet);
     const float cell_m = meshed.grid.cell_m;
-    const auto before = static_cast<double>(meshed.mesh.triangleCount());
-    auto mesh =
-        pipeline::edited(std::move(meshed.mesh), request.edits, {model.tape, request.grid.surface, cell_m}, context);
+    size_t otherwise = 0;
+    pipeline::MeshEdits edits = request.edits;
+    edits.otherwise = &otherwise;
+    auto mesh = pipeline::edited(std::move(meshed.mesh), edits, {model.tape, request.grid.surface, cell_m}, context);
     if (!mesh.ok()) return mesh;
     if (mesh->triangleCount() == 0 && scene.empty() && !allFiles(request.out).empty())
         return withOptions(pipeline::noSurface(model, cell_m));
-    const double left = before > 0 ? static_cast<double>(mesh->triangleCount()) / before : 0;
+    const double left = otherwise > 0 ? static_cast<double>(mesh->triangleCount()) / static_cast<double>(otherwise) : 0;
     if (request.edits.simplify < 1 && left > request.edits.simplify && !request.quiet)
         printMessage(
             "warning: --simplify {:g}: {:.2g} of the triangles are left, for fewer would cross one another or "

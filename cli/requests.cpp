@@ -98,7 +98,8 @@ void addEditOptions(CLI::App& command, MeshEdits& edits) {
                                 {"largest", int(mesh::Keep::Largest)}}))
         ->option_text("{all,grounded,largest} [all]");
     command.add_option("--smooth", edits.smooth, "Passes of Laplacian smoothing")->check(wholeNumber(0, 1000));
-    auto* share = command.add_option("--simplify", edits.simplify, "Simplify to at most this share of the triangles");
+    auto* share = command.add_option("--simplify", edits.simplify,
+                                     "Simplify to at most this share of the triangles that the mesh has otherwise");
     share->check(between(0.001, 1));
     command
         .add_option("--tolerance", edits.tolerance_m,

@@ -16,15 +16,17 @@ namespace sgm::pipeline {
 struct MeshEdits {
     mesh::Keep keep = mesh::Keep::All;         ///< which connected components stay
     int smooth = 0;                            ///< passes of Laplacian smoothing
-    double simplify = 1;                       ///< share of the triangles that stay
+    double simplify = 1;                       ///< share of the triangles it would have otherwise that stay
     std::optional<double> tolerance_m = {};    ///< none: see toleranceOf
     mesh::SimplifiedPieces* pieces = nullptr;  ///< of the frame before, in an animation
+    size_t* otherwise = nullptr;               ///< set to the triangles that `simplify` is a share of
 
     bool isAsked() const { return smooth > 0 || simplify < 1 || tolerance_m || keep != mesh::Keep::All; }
 };
 
-/// How far simplification may move the surface, metres: of a crisp mesh a hundredth of a cell, unless the edits say
-/// otherwise or smooth it; 0 keeps all triangles. Nothing unless the edits say so in a build without CGAL.
+/// How far simplification may move the surface before `simplify` takes a share of its triangles, metres: of a crisp
+/// mesh a hundredth of a cell, unless the edits say otherwise or smooth it; 0 keeps all triangles. Nothing unless the
+/// edits say so in a build without CGAL.
 double toleranceOf(const MeshEdits& edits, mesh::Surface surface, float cell_m);
 
 /// What a mesh was made of.

@@ -24,7 +24,10 @@ Result<std::vector<mesh::LevelOfDetail>> makeLevels(const Model& model, const me
         if (request.flipNormals) mesh::turnInsideOut(meshed->mesh);
         return std::move(meshed->mesh);
     };
-    return mesh::makeLevels(finest, {request.levels - 1, context.threads, cell_m, meshAt}, context.progress);
+    auto levels = mesh::makeLevels(finest, {request.levels - 1, context.threads, cell_m, meshAt}, context.progress);
+    if (levels.ok() && request.meshing.surface == mesh::Surface::Crisp)
+        for (mesh::LevelOfDetail& level : *levels) mesh::correctNormals(level.mesh);
+    return levels;
 }
 
 }  // namespace
