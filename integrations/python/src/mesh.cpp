@@ -205,7 +205,8 @@ Result<std::shared_ptr<Mesh>> finish(std::shared_ptr<const pipeline::Model> mode
                                      const MeshRequest& request, pipeline::Context& context) {
     const float cell_m = meshed.grid.cell_m;
     mesh::keepOnly(meshed.mesh, request.edits.keep, cell_m, context.threads);
-    auto edited = pipeline::edited(std::move(meshed.mesh), request.edits, {model->tape, request.surface, cell_m}, context);
+    auto edited =
+        pipeline::edited(std::move(meshed.mesh), request.edits, {model->tape, request.surface, cell_m}, context);
     if (!edited.ok()) return edited.error();
     if (edited->triangleCount() == 0) return pipeline::noSurface(*model, cell_m);
     auto made = std::make_shared<Mesh>();
