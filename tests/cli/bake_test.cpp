@@ -1,9 +1,11 @@
 // sgm bake and sgm merge as programs: killed, resumed, refused, and run by GNU parallel.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
@@ -99,6 +101,16 @@ TEST_F(BakeProgram, SaysWhatIsWrong) {
     refused("merge --for blend " + path("a"), 2, "blend");
 }
 
+/// A file of /proc, as far as it can be read: its process may end meanwhile, which a stream throws.
+std::string processText(const std::filesystem::path& path) {
+    std::string text(4096, '\0');
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const ssize_t count = file < 0 ? 0 : read(file, text.data(), text.size());
+    if (file >= 0) close(file);
+    text.resize(static_cast<size_t>(std::max<ssize_t>(count, 0)));
+    return text;
+}
+
 /// Kills with -9: tasks that bake into a folder, and, where asked, what started them.
 class Killer {
 public:
@@ -120,12 +132,13 @@ private:
                 const std::string name = entry.path().filename();
                 const pid_t pid = std::atoi(name.c_str());
                 if (pid <= 0 || seen.contains(pid)) continue;
-                const std::string command = contentOf(entry.path() / "cmdline");
+                const std::string command = processText(entry.path() / "cmdline");
                 const bool isTask = command.starts_with(SGM_PROGRAM) && command.find(folder_) != std::string::npos &&
                                     command.find("--tile") != std::string::npos;
                 if (!isTask) continue;
                 seen.insert(pid);
-                const std::string stat = contentOf(entry.path() / "stat");
+                const std::string stat = processText(entry.path() / "stat");
+                if (stat.empty()) continue;
                 const pid_t parent = std::atoi(stat.c_str() + stat.find(')') + 4);
                 const bool byParent = parents_ > 0 && parent > 1;
                 if (byParent && kill(parent, SIGKILL) == 0) --parents_, ++killed_;

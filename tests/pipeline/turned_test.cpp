@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "grammar/derive/turn.h"
 #include "modeler/core/conventions.h"
@@ -60,6 +61,23 @@ TEST(Turned, MeshIsThatOfTheStraightModel) {
             farthest = std::max(farthest, length(a.positions[i] - b.positions[i] - shift));
     }
     EXPECT_LT(farthest, 1e-4f);
+}
+
+/// The mesh of the turned model names parts by their numbers.
+TEST(Turned, PartsHaveTheSameNumbers) {
+    for (const auto& file : std::filesystem::directory_iterator("examples/buildings")) {
+        if (file.path().extension() != ".sgm") continue;
+        SCOPED_TRACE(file.path().filename());
+        syntax::Diagnostics problems;
+        const auto grammar = load(file.path(), fileText(file.path()), problems);
+        ASSERT_TRUE(grammar);
+        Context context{nullptr, 2};
+        const auto model = makeModel(grammar, *optionsFor(*grammar, {}), context);
+        ASSERT_TRUE(model.ok());
+        const auto turned = makeModel(derive::turned(model->derivation, .4), context);
+        ASSERT_TRUE(turned.ok());
+        EXPECT_EQ(turned->lowered->shapeOf, model->lowered->shapeOf);
+    }
 }
 
 TEST(Turned, LevelSetStandsAlongTheGrid) {

@@ -22,7 +22,7 @@ std::string judge(const std::string& text, size_t& parsed) {
     const double begin = secondsOf(threadClock());
     const Ast ast = parse(source, operations::table(), diagnostics);
     const double ms = 1e3 * (secondsOf(threadClock()) - begin);
-    if (ms > 1e3 * boundSeconds(.05)) return "parsing took " + std::to_string(ms) + " ms";
+    if (ms > 1e3 * boundSeconds(.2)) return "parsing took " + std::to_string(ms) + " ms";
     for (const Diagnostic& d : diagnostics.all()) {
         if (d.span.source != source.get() || d.span.begin > d.span.end || d.span.end > text.size())
             return "a problem outside the file: " + d.message;
@@ -64,10 +64,11 @@ TEST(Fuzz, ArbitraryBytesAreRefusedInPlace) {
 
 TEST(Fuzz, LongInputTakesLinearTime) {
     size_t parsed = 0;
+    constexpr size_t bytes = 240'000;  // quadratic work on these takes a second
     for (const char* unit :
          {"param a = 1\n", "rule A -> cube + +\n", "(", "\xff ", "{ ", "\"\n", "rule A -> a[", "+ a "}) {
         std::string text = "grammar 1\nrule A -> ";
-        while (text.size() < 60000) text += unit;
+        while (text.size() < bytes) text += unit;
         EXPECT_EQ(judge(text, parsed), "") << unit;
     }
 }
