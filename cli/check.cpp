@@ -22,9 +22,8 @@ namespace {
 
 struct CheckRequest {
     std::vector<std::string> files;
-    uint64_t seed = 1;
-    double seconds = 60;  ///< for all `check` lines of a file, and for the model that `sgm build` makes
-    uint64_t shapes = derive::Budget{}.shapes;
+    /// What `sgm build` would make; its seed and time are those of `check` lines too.
+    pipeline::ModelChoice model;
     double otherSeconds = 5;  ///< for the models of other starts, styles and ends of ranges
     GridRequest grid;         ///< of the mesh that is looked at
     bool json = false;
@@ -35,7 +34,7 @@ int runGrammarChecks(const std::shared_ptr<const rules::Grammar>& grammar, const
                      syntax::Diagnostics& diagnostics) {
     Watch watch(false);
     Context context{watch.progress(), request.grid.threads};
-    const auto verdicts = pipeline::runChecks(grammar, request.seed, context, request.seconds);
+    const auto verdicts = pipeline::runChecks(grammar, request.model.seed, context, request.model.secondsBudget);
     if (!verdicts.ok()) return fail(verdicts.error());
     for (const pipeline::Verdict& v : *verdicts)
         if (!v.passed) diagnostics.error(v.span, v.message);
@@ -53,8 +52,7 @@ int tryGrammar(const std::string& file, const std::shared_ptr<const rules::Gramm
                const CheckRequest& request, syntax::Diagnostics& diagnostics) {
     Watch watch(false);
     const auto trials =
-        tryModels(grammar, {request.seed, request.seconds, request.shapes, request.otherSeconds, request.grid},
-                  watch.progress(), diagnostics);
+        tryModels(grammar, {request.model, request.otherSeconds, request.grid}, watch.progress(), diagnostics);
     if (!trials.ok()) return fail(trials.error());
     if (trials->tried < trials->all && !request.json)
         printMessage("note: {}: {} of {} settings were tried in {:g} s (--try-seconds)\n", file, trials->tried,
@@ -101,24 +99,21 @@ void addCheck(CLI::App& app, int& exitCode) {
         "check", "Show every problem of grammar files, also of what they derive, and run their `check` lines");
     auto request = std::make_shared<CheckRequest>();
     command->add_option("FILE", request->files, "Grammar files (.sgm)")->required();
-    command->add_option("--seed", request->seed, "Seed for the `check` lines")->check(anySeed())->capture_default_str();
-    command
-        ->add_option("--max-seconds", request->seconds,
-                     "Budget of time for all `check` lines of a file, and for the model that `sgm build` makes of it")
-        ->check(between(1e-3, 1e9))
-        ->capture_default_str();
-    command->add_option("--max-shapes", request->shapes, "Budget of derived shapes of each model")
-        ->check(wholeNumber(1, 4'000'000'000))
-        ->capture_default_str();
+    request->model.secondsBudget = 60;
+    addChoiceOptions(*command, request->model);
+    command->get_option("--max-seconds")
+        ->description("Budget of time for the model, and for all `check` lines of a file");
     command
         ->add_option("--try-seconds", request->otherSeconds,
                      "Budget of time for the other models: each start, style and `derive` way, and each parameter at "
-                     "the ends of its range")
+                     "the ends of its range, with what else is said here")
         ->check(between(0, 1e9))
         ->capture_default_str();
     addGridOptions(*command, request->grid);
     command->add_flag("--json", request->json, "Problems as JSON, for editors");
-    command->footer("Examples:\n  sgm check my.sgm\n  sgm check examples/*.sgm --json");
+    command->footer(
+        "Examples:\n  sgm check my.sgm\n  sgm check my.sgm --start Tower --style Tall --set floors=12\n"
+        "  sgm check examples/*.sgm --json");
     command->callback([request, &exitCode] { exitCode = check(*request); });
 }
 

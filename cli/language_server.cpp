@@ -212,11 +212,11 @@ void readAll(Queue& queue) {
 /// What `sgm check` would say of the models, and of the grammar's own tests.
 void tryGrammar(const std::shared_ptr<const rules::Grammar>& grammar, Progress* progress, syntax::Diagnostics& found) {
     TrialOptions options;
-    options.mainSeconds = 10;
+    options.model.secondsBudget = 10;
     options.otherSeconds = 2;
     if (!tryModels(grammar, options, progress, found).ok() || cancelled(progress)) return;
     pipeline::Context context{progress};
-    const auto verdicts = pipeline::runChecks(grammar, options.seed, context, options.mainSeconds);
+    const auto verdicts = pipeline::runChecks(grammar, options.model.seed, context, options.model.secondsBudget);
     if (!verdicts.ok()) return;
     for (const pipeline::Verdict& v : *verdicts)
         if (!v.passed) found.error(v.span, v.message);

@@ -25,20 +25,24 @@ constexpr uint64_t mostShapes = 4'000'000'000;
 
 }  // namespace
 
-void addModelOptions(CLI::App& command, ModelRequest& request) {
-    command.add_option("FILE", request.file, "Grammar file (.sgm)")->required();
-    command.add_option("--start", request.start, "Start symbol (default: the first `start`)");
-    command.add_option("--derive", request.derive, "Run this `derive` way instead of the automatic derivation");
-    command.add_option("--set", request.settings, "Set a parameter, NAME=VALUE; may be given again")
+void addChoiceOptions(CLI::App& command, pipeline::ModelChoice& choice) {
+    command.add_option("--start", choice.start, "Start symbol (default: the first `start`)");
+    command.add_option("--derive", choice.derive, "Run this `derive` way instead of the automatic derivation");
+    command.add_option("--set", choice.settings, "Set a parameter, NAME=VALUE; may be given again")
         ->allow_extra_args(false);
-    command.add_option("--style", request.style, "Use a named set of parameter values");
-    command.add_option("--seed", request.seed, "Seed of all random choices")->check(anySeed())->capture_default_str();
-    command.add_option("--max-shapes", request.shapeBudget, "Budget of derived shapes")
+    command.add_option("--style", choice.style, "Use a named set of parameter values");
+    command.add_option("--seed", choice.seed, "Seed of all random choices")->check(anySeed())->capture_default_str();
+    command.add_option("--max-shapes", choice.shapeBudget, "Budget of derived shapes")
         ->check(wholeNumber(1, mostShapes))
         ->capture_default_str();
-    command.add_option("--max-seconds", request.secondsBudget, "Budget of time for the derivation")
+    command.add_option("--max-seconds", choice.secondsBudget, "Budget of time for the derivation")
         ->check(between(1e-3, 1e9))
         ->capture_default_str();
+}
+
+void addModelOptions(CLI::App& command, ModelRequest& request) {
+    command.add_option("FILE", request.file, "Grammar file (.sgm)")->required();
+    addChoiceOptions(command, request);
 }
 
 namespace {

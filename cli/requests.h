@@ -39,7 +39,9 @@ struct ModelRequest : pipeline::ModelChoice {
     std::vector<Target> targets;  ///< what will be written, which may replace no file that is read
     bool quiet = false;           ///< warnings of the text and of the section aren't printed
 };
-/// Adds FILE, --start, --derive, --set, --style, --seed and the budgets.
+/// Adds --start, --derive, --set, --style, --seed and the budgets.
+void addChoiceOptions(CLI::App& command, pipeline::ModelChoice& choice);
+/// Adds FILE and the options that choose a model of it, as addChoiceOptions does.
 void addModelOptions(CLI::App& command, ModelRequest& request);
 
 /// Adds --section.

@@ -20,7 +20,7 @@ namespace {
 struct Setting {
     derive::Options options;
     std::string words;    ///< "with floors = 20"; empty for a start as it is
-    bool isMain = false;  ///< what `sgm build` makes without options
+    bool isMain = false;  ///< what `sgm build` makes with the same options
     bool isEnd = false;   ///< one end of a range, of which less is asked
 };
 
@@ -44,8 +44,11 @@ public:
     }
 
     Result<Trials> run() {
+        const auto chosen = pipeline::optionsFor(*grammar_, options_.model);
+        if (!chosen.ok()) return chosen.error();
+        main_ = chosen->start;
         Trials trials;
-        const Status main = attempt({optionsOf(0), {}, true}, options_.mainSeconds, true);
+        const Status main = attempt({*chosen, {}, true}, options_.model.secondsBudget, true);
         if (!main.ok() && main.error().kind == Error::Kind::Cancelled) return main.error();
         if (!main.ok()) tell(main.error(), {}, true);
         trials.budgetSpent = !main.ok() && main.error().kind == Error::Kind::Budget;
@@ -74,28 +77,31 @@ private:
         return {span.source, span.begin, std::move(message)};
     }
 
-    derive::Options optionsOf(uint32_t start) const {
-        derive::Options options;
-        options.start = start;
-        options.seed = options_.seed;
-        options.params = rules::valuesOf(*grammar_, start);
-        return options;
+    /// What is asked for, of this start; a way belongs to the main one.
+    derive::Options optionsOf(uint32_t start, const std::string& style) const {
+        pipeline::ModelChoice choice = options_.model;
+        choice.start = grammar_->symbols[grammar_->starts[start].symbol].name;
+        choice.style = style;
+        if (start != main_) choice.derive.clear();
+        return *pipeline::optionsFor(*grammar_, choice);  // its names are those that the main model was chosen by
     }
+    derive::Options optionsOf(uint32_t start) const { return optionsOf(start, options_.model.style); }
 
     /// All settings but the main one: starts, styles, ways, then parameters one at a time.
     std::vector<Setting> settings() const {
         std::vector<Setting> list;
         const auto starts = static_cast<uint32_t>(grammar_->starts.size());
-        for (uint32_t s = 1; s < starts; ++s) list.push_back({optionsOf(s), {}, false});
+        for (uint32_t s = 0; s < starts; ++s)
+            if (s != main_) list.push_back({optionsOf(s), {}, false});
         for (const rules::Style& style : grammar_->styles)
             for (uint32_t s = 0; s < starts; ++s) {
                 if (style.start != rules::none && style.start != s) continue;
-                Setting setting{optionsOf(s), fmt::format("with style '{}'", style.name), false};
-                for (const rules::Setting& value : style.settings) setting.options.params[value.param] = value.value;
-                list.push_back(std::move(setting));
+                Setting setting{optionsOf(s, style.name), fmt::format("with style '{}'", style.name), false};
+                if (setting.options.params != optionsOf(s).params) list.push_back(std::move(setting));
             }
-        if (starts == 1)  // a way belongs to a start, and nothing says which
+        if (starts == 1)  // nothing says which start a way belongs to
             for (const rules::Derive& way : grammar_->derives) {
+                if (way.name == options_.model.derive) continue;
                 list.push_back({optionsOf(0), fmt::format("with derive '{}'", way.name), false});
                 list.back().options.derive = way.name;
             }
@@ -131,7 +137,6 @@ private:
     Status attempt(const Setting& setting, double seconds, bool thorough) {
         derive::Options options = setting.options;
         options.budget.seconds = seconds;
-        options.budget.shapes = options_.shapes;
         auto derivation = derive::derive(grammar_, options, progress_);
         if (!derivation.ok()) return derivation.error();
         syntax::Diagnostics found;
@@ -240,6 +245,7 @@ private:
     Progress* progress_;
     syntax::Diagnostics& diagnostics_;
     std::vector<pipeline::MeshWarning> ofCells_;
+    uint32_t main_ = 0;                                                       ///< the main model's start
     std::set<uint32_t> standing_;                                             ///< starts in which nothing floats
     derive::Selections selections_;                                           ///< of all starts so far
     std::set<Key> said_;                                                      ///< errors

@@ -13,11 +13,9 @@
 namespace sgm::cli {
 
 struct TrialOptions {
-    uint64_t seed = 1;
-    double mainSeconds = 60;                    ///< for the model that `sgm build` makes without options
-    uint64_t shapes = derive::Budget{}.shapes;  ///< of each model, as `sgm build` has it
-    double otherSeconds = 5;                    ///< for all others together; those that are left then aren't tried
-    GridRequest grid{};                         ///< of the mesh of the main model
+    pipeline::ModelChoice model{};  ///< the main model, as `sgm build` makes it; others differ in one thing
+    double otherSeconds = 5;        ///< for all others together; those that are left then aren't tried
+    GridRequest grid{};             ///< of the mesh of the main model
 };
 
 /// How the trials went.
@@ -27,11 +25,12 @@ struct Trials {
     std::vector<pipeline::MeshWarning> ofCells;  ///< of the main model where its cells lack parts
 };
 
-/// Derives and lowers the first start as it is, whose problems are those of `sgm build`: errors are errors. Then every
-/// other start, every style and `derive` way, and every parameter of the main file at the ends of its range or at each
+/// Derives and lowers the main model, whose problems are those of `sgm build`: errors are errors. Then every other
+/// start, every style and `derive` way, and every parameter of the main file at the ends of its range or at each
 /// choice, one at a time: what fails there is a warning that names the setting; so is, at a choice, a style or a way,
-/// what floats by its boxes where nothing of the start as it is does. What floats in the mesh of the first start is a
-/// warning too, unless these cells lack parts: then all that is told of the mesh is returned. Error::Cancelled.
+/// what floats by its boxes where nothing of the start as it is does. What floats in the mesh of the main model is a
+/// warning too, unless these cells lack parts: then all that is told of the mesh is returned. Error::Usage and
+/// Error::Input as of pipeline::optionsFor, Error::Cancelled.
 Result<Trials> tryModels(std::shared_ptr<const rules::Grammar> grammar, const TrialOptions& options, Progress* progress,
                          syntax::Diagnostics& diagnostics);
 

@@ -79,6 +79,32 @@ TEST_F(Check, WarnsOfWhatOtherSettingsComeTo) {
                  "with derive 'd': rule 'R' matches nothing here");
 }
 
+TEST_F(Check, RefusesTheModelThatIsAskedFor) {
+    const std::string text =
+        "param n = 1 in 0..9\nstart A -> cube size (2m / (4 - n))\nstart B -> cube size (2m / (6 - n))\n"
+        "style high { n = 7 }\nderive d: R0 => R0\nrule R0: C -> cube\n";
+    EXPECT_EQ(checked(text, " --set n=2 --try-seconds 0").code, 0);
+    for (const char* options : {" --set n=4", " --start B --style high", " --start B --set n=6"}) {
+        const Outcome run = checked(text, options);
+        EXPECT_EQ(run.code, 1) << options << run.out;
+        EXPECT_NE(run.out.find(": error: the size of the shape isn't positive"), std::string::npos)
+            << options << run.out;
+    }
+    EXPECT_NE(checked(text, " --derive d").out.find("error: rule 'R0' matches nothing here"), std::string::npos);
+    const Outcome other = checked(text, " --start B --set n=5");
+    EXPECT_EQ(other.code, 0) << other.out;
+    EXPECT_NE(other.out.find(":3:17: warning: the size of the shape"), std::string::npos)
+        << "what is set holds for the other starts, too: " << other.out;
+}
+
+TEST_F(Check, NamesThatTheGrammarHasNotAreWrongUsage) {
+    for (const char* options : {" --start B", " --style low", " --set n=1", " --derive d"}) {
+        const Outcome run = checked("start A -> cube\n", options);
+        EXPECT_EQ(run.code, 2) << options << run.out;
+        EXPECT_NE(run.out.find("sgm: no "), std::string::npos) << options << run.out;
+    }
+}
+
 TEST_F(Check, LeavesTheLibrarysRangesAlone) {
     const Outcome check = sgm("check examples/clouds/ball.sgm");
     EXPECT_EQ(check.code, 0);
