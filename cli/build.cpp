@@ -15,6 +15,7 @@
 #include "cli/watch.h"
 #include "modeler/core/packages.h"
 #include "modeler/export/exporter.h"
+#include "modeler/volume/volume.h"
 
 namespace sgm::cli {
 namespace {
@@ -101,6 +102,14 @@ Status checkPackages(const BuildRequest& request) {
     return Done{};
 }
 
+/// The agent walks through a cave.
+Status checkAgent(const BuildRequest& request) {
+    if (request.agent.empty()) return Done{};
+    if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
+    const auto agent = parseAgent(request.agent);
+    return agent.ok() ? Status(Done{}) : agent.error();
+}
+
 /// What can be refused before the work.
 Status checkRequest(const BuildRequest& request) {
     if (const Status s = checkOutputs(request.out); !s.ok()) return s;
@@ -119,10 +128,8 @@ Status checkRequest(const BuildRequest& request) {
     if (const Status s = checkSection(request); !s.ok()) return s;
     if (const Status s = checkEdits(request); !s.ok()) return s;
     if (const Status s = checkNames(request); !s.ok()) return s;
-    if (request.agent.empty()) return Done{};
-    if (!surveys(request)) return Error{Error::Kind::Usage, "--agent walks through a cave: add --cave or --floor FILE"};
-    if (const auto agent = parseAgent(request.agent); !agent.ok()) return agent.error();
-    return Done{};
+    if (const Status s = checkAgent(request); !s.ok()) return s;
+    return wantsLevelSet(request) ? volume::load() : Status(Done{});
 }
 
 Status buildOne(const BuildRequest& request) {

@@ -10,15 +10,8 @@
 
 namespace sgm::cli {
 
-Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipeline::Model& model, const Box3f& bounds,
-                                 double aspect) {
-    const bool hasObjects = !model.derivation.objects.empty();  // which the tape is without
-    if (text.empty() && hasObjects) return render::frame(bounds, aspect);
-    if (text.empty())
-        return turns ? render::frameTurning(model.tape, bounds, aspect) : render::frame(model.tape, bounds, aspect);
-    if (text == "inside" && hasObjects)
-        return Error{Error::Kind::Usage, "--camera inside: with objects that 'place' puts, say where the eye is"};
-    if (text == "inside") return render::inside(model.tape, bounds);
+Result<std::optional<render::Camera>> parseCamera(const std::string& text) {
+    if (text.empty() || text == "inside") return std::optional<render::Camera>{};
     render::Camera c;
     int used = 0;
     const int read = std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf%n", &c.eye.x, &c.eye.y, &c.eye.z, &c.at.x,
@@ -31,7 +24,20 @@ Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipe
                      fmt::format("--camera {}: the eye stands where it looks; let the last three numbers be another "
                                  "point",
                                  text)};
-    return c;
+    return std::optional(c);
+}
+
+Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipeline::Model& model, const Box3f& bounds,
+                                 double aspect) {
+    const bool hasObjects = !model.derivation.objects.empty();  // which the tape is without
+    if (text.empty() && hasObjects) return render::frame(bounds, aspect);
+    if (text.empty())
+        return turns ? render::frameTurning(model.tape, bounds, aspect) : render::frame(model.tape, bounds, aspect);
+    if (text == "inside" && hasObjects)
+        return Error{Error::Kind::Usage, "--camera inside: with objects that 'place' puts, say where the eye is"};
+    if (text == "inside") return render::inside(model.tape, bounds);
+    const auto said = parseCamera(text);
+    return said.ok() ? Result<render::Camera>(**said) : said.error();
 }
 
 void warnOfEye(const pipeline::Model& model, const render::Camera& camera, bool isInside, bool isFog) {

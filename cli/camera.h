@@ -2,6 +2,7 @@
 // Enters: a text and a model. Leaves: a camera. Assumes metres.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "grammar/pipeline/model.h"
@@ -9,8 +10,12 @@
 
 namespace sgm::cli {
 
-/// "ex,ey,ez,ax,ay,az" says where the eye is and what it looks at, metres; "inside" looks for a place in the largest
-/// hollow; "" frames the bounds, of a model that turns at every angle. Error::Usage for anything else.
+/// The camera that "ex,ey,ez,ax,ay,az" says, where the eye is and what it looks at, metres; none for "" and "inside",
+/// which depend on the model. Error::Usage for anything else.
+Result<std::optional<render::Camera>> parseCamera(const std::string& text);
+
+/// As `parseCamera` reads it; "inside" looks for a place in the largest hollow; "" frames the bounds, of a model that
+/// turns at every angle. Error::Usage where it can't be read, or for "inside" with objects that `place` puts.
 Result<render::Camera> cameraFor(const std::string& text, bool turns, const pipeline::Model& model, const Box3f& bounds,
                                  double aspect);
 

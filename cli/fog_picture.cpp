@@ -4,10 +4,16 @@
 
 #include <algorithm>
 
+#include "modeler/core/packages.h"
 #include "modeler/export/fog_options.h"
+#include "modeler/volume/volume.h"
 #include "viewer/render/fog_scene.h"
 
 namespace sgm::cli {
+
+Status checkFog() {
+    return isBuiltWith(Package::OpenVdb) ? volume::load() : missingPackage(Package::OpenVdb, "--view fog");
+}
 
 Result<exporter::ExportOptions> fogOptions(const std::vector<std::string>& words) {
     exporter::ExportOptions options;

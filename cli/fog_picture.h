@@ -11,6 +11,9 @@
 
 namespace sgm::cli {
 
+/// Error::Input where this program has no OpenVDB, which fog needs; the errors of volume::load.
+Status checkFog();
+
 /// "NAME=VALUE" each, of those options of .vdb files that shape fog; Error::Usage names what isn't one.
 Result<exporter::ExportOptions> fogOptions(const std::vector<std::string>& words);
 

@@ -10,6 +10,7 @@
 #include "cli/validators.h"
 #include "grammar/lower/objects.h"
 #include "grammar/lower/solid_tree.h"
+#include "grammar/rules/words.h"
 #include "modeler/mesh/proxy.h"
 
 namespace sgm::cli {
@@ -117,12 +118,15 @@ Status checkOption(const OutputRequest& request, const std::string& text) {
         return Error{Error::Kind::Usage, fmt::format("write --format-option NAME=VALUE instead of '{}'", text)};
     for (const std::string& file : allFiles(request))
         if (has(*formatOf(file), name)) return Done{};
-    std::vector<std::string> endings;
-    for (const Exporter& e : exporter::exporters())
+    std::vector<std::string> endings, known;
+    for (const Exporter& e : exporter::exporters()) {
         if (has(e, name)) endings.emplace_back(e.extension);
+        for (const exporter::ExportOption& option : e.options) known.emplace_back(option.name);
+    }
+    const std::string near = rules::nearestHint(name, known);
     if (endings.empty())
-        return Error{Error::Kind::Usage,
-                     fmt::format("--format-option {}: no format has that option (see `sgm reference`)", text)};
+        return Error{Error::Kind::Usage, fmt::format("--format-option {}: no format has that option; {}", text,
+                                                     near.empty() ? "`sgm reference` lists them" : near)};
     return Error{Error::Kind::Usage, fmt::format("--format-option {}: an option of {}, and no such file is asked for",
                                                  text, fmt::join(endings, " "))};
 }

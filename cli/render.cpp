@@ -21,7 +21,6 @@
 #include "grammar/pipeline/mesh_edits.h"
 #include "modeler/core/conventions.h"
 #include "modeler/core/lower_case.h"
-#include "modeler/core/packages.h"
 #include "viewer/render/draw.h"
 
 namespace sgm::cli {
@@ -100,19 +99,19 @@ Status checkRequest(const RenderRequest& request) {
         return wrong("--keep, --smooth, --simplify and --tolerance change a mesh: add --view mesh, labels or creases");
     if (request.grid.objectCell_m > 0 && !drawsMesh(request))
         return wrong("--object-cell is of meshes: add --view mesh, labels or creases");
-    if (request.view == "fog" && !isBuiltWith(Package::OpenVdb)) return missingPackage(Package::OpenVdb, "--view fog");
     if (request.fog.extinction > 0 && request.view != "fog") return wrong("--extinction is of fog: add --view fog");
     if (!request.fog.options.empty() && request.view != "fog")
         return wrong("--format-option is of fog, as .vdb files have it: add --view fog");
     if (const auto fog = fogOptions(request.fog.options); !fog.ok()) return fog.error();
     if (request.print.stats && (request.view != "field" || request.turntable > 0))
         return wrong("--stats counts evaluations of the field for one picture: leave out --view and --turntable");
+    if (const auto camera = parseCamera(request.camera.place); !camera.ok()) return camera.error();
     const auto name = frameName(request.output, 0, "--turntable");
     if (request.turntable == 0 && name.ok())
         return wrong(fmt::format("-o {}: the name numbers pictures: add --turntable COUNT, or write a name without '%'",
                                  request.output));
-    if (request.turntable == 0) return Done{};
-    return name.ok() ? Status(Done{}) : Status(name.error());
+    if (request.turntable > 0 && !name.ok()) return name.error();
+    return request.view == "fog" ? checkFog() : Status(Done{});
 }
 
 /// What draws pictures of a view.

@@ -21,6 +21,8 @@ Outcome through(Arguments&&... arguments) {
 
 }  // namespace
 
+Status load() { return functions().ok() ? Status(Done{}) : functions().error(); }
+
 Result<Air> airOf(const Volume& level, bool hollow, Progress* progress) {
     return through<&PluginFunctions::airOf, Result<Air>>(level, hollow, progress);
 }

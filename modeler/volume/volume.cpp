@@ -73,6 +73,8 @@ Box3f Volume::bounds() const {
             Vec3d{world.max().x(), world.max().y(), world.max().z()}.as<float>()};
 }
 
+Status load() { return Done{}; }
+
 Result<Volume> sample(const std::vector<mesh::Block>& blocks, const eval::Tape& whole, const mesh::Grid& grid,
                       int halfWidth, int threads, Progress* progress) {
     if (halfWidth < 1 || halfWidth > mesh::blockCells)

@@ -39,6 +39,10 @@ private:
 
 constexpr int usualHalfWidth = 3;  ///< of a level set, in voxels: what OpenVDB's own tools expect
 
+/// Loads what needs OpenVDB, where that isn't linked or loaded yet; what works with volumes does so too, when it is
+/// called. Error::Internal or Error::Input where this program has none, Error::Budget where there are no threads.
+Status load();
+
 /// Samples `whole` at the grid's corners into a level set of `halfWidth` voxels (1 … 32) to each side: in the blocks,
 /// which hold the surface, and in all that touch them. Beyond the band voxels are inactive and inside and outside tiled
 /// by sign. Equal bytes at any thread count. Error::Usage for another width, the errors of mesh::subdivide for the

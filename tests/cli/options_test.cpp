@@ -46,6 +46,9 @@ TEST_F(Cli, PicturesTellAnEyeInRockAndASectionThatCutsNothing) {
     const Outcome same = sgm(draw + " --camera 1,1,1,1,1,1");
     EXPECT_EQ(same.code, 2);
     EXPECT_NE(same.out.find("the eye stands where it looks"), std::string::npos) << same.out;
+    const Outcome early = sgm("render nowhere.sgm -o " + path("a.png") + " --camera 1,2");
+    EXPECT_NE(early.out.find("--camera 1,2: write EYE,AT"), std::string::npos)
+        << "before the file is read: " << early.out;
     const Outcome within = sgm(draw + " --camera 3.5,0,0,0,0,0");
     if (within.out.find("EGL") != std::string::npos) GTEST_SKIP() << "nothing can be drawn here";
     EXPECT_NE(within.out.find("warning: the eye stands at least 0.5 m within the solid at (3.5, 0, 0)"),

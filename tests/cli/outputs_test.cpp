@@ -63,6 +63,16 @@ TEST_F(Cli, AReportIsPrintedOnDemandAndRefusedBeforeTheWork) {
     EXPECT_FALSE(fs::exists(path("a.glb")));
 }
 
+TEST_F(Cli, AFormatOptionThatNoFormatHasNamesTheNearestOne) {
+    const std::string start = "build examples/joints.sgm -o " + path("a.glb") + " --format-option ";
+    const Outcome near = sgm(start + "pak=draco"), far = sgm(start + "zzzzzz=1");
+    EXPECT_EQ(near.code, 2);
+    EXPECT_NE(near.out.find("pak=draco: no format has that option; did you mean 'pack'?"), std::string::npos)
+        << near.out;
+    EXPECT_NE(far.out.find("zzzzzz=1: no format has that option; `sgm reference` lists them"), std::string::npos)
+        << far.out;
+}
+
 TEST_F(Cli, ALightMapIsThatOfObjectsWhereTheModelHasNoMeshOfItsOwn) {
     const std::string town =
         grammar("start Town -> size 8 Plot\nrule Plot -> place House\nstart House -> cube size 4\n");

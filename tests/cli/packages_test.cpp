@@ -36,6 +36,18 @@ TEST_F(Cli, CommandsSayWhichPackageTheBuildLacks) {
     }
 }
 
+TEST_F(Cli, AMissingModuleOfVolumesIsToldBeforeTheWork) {
+    if (!SGM_HAS_OPENVDB) GTEST_SKIP() << "this build needs no module";
+    const std::string alone = path("sgm");
+    fs::copy_file(SGM_PROGRAM, alone);
+    for (const std::string arguments : {" build nowhere.sgm --cave -o a.glb", " build nowhere.sgm -o a.vdb",
+                                        " render nowhere.sgm --view fog -o a.png"}) {
+        const Outcome run = outcomeOf(alone + arguments);
+        EXPECT_EQ(run.code, 1) << arguments;
+        EXPECT_NE(run.out.find("sgm_volumes.so is not installed"), std::string::npos) << arguments << run.out;
+    }
+}
+
 TEST_F(Cli, LotsOfASkeletonNeedCgal) {
     const std::string file = path("lots.sgm");
     std::ofstream(file)

@@ -24,15 +24,20 @@ struct Outcome {
     std::string out;  ///< stdout and stderr together
 };
 
-/// Runs `sgm ARGUMENTS`; `before` is shell text that stands in front, as "printf 'R0\\n' | ".
-inline Outcome sgm(const std::string& arguments, const std::string& before = "") {
+/// Runs a command of the shell.
+inline Outcome outcomeOf(const std::string& command) {
     Outcome run;
-    FILE* pipe = popen((before + SGM_PROGRAM " " + arguments + " 2>&1").c_str(), "r");
+    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
     char buffer[4096];
     for (size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) run.out.append(buffer, n);
     const int status = pclose(pipe);
     run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return run;
+}
+
+/// Runs `sgm ARGUMENTS`; `before` is shell text that stands in front, as "printf 'R0\\n' | ".
+inline Outcome sgm(const std::string& arguments, const std::string& before = "") {
+    return outcomeOf(before + SGM_PROGRAM " " + arguments);
 }
 
 inline std::string read(const fs::path& path) { return contentOf(path); }
