@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <unordered_map>
-#include <unordered_set>
 
 #include "grammar/derive/lift.h"
 #include "grammar/lower/likeness.h"
+#include "modeler/core/distinct_names.h"
 #include "modeler/field/primitives.h"
 
 namespace sgm::lower {
@@ -16,21 +15,6 @@ namespace {
 using derive::none;
 using derive::Shape;
 using derive::ShapeId;
-
-/// Names of one tree, equal ones numbered: Window, Window_2, Window_3.
-class DistinctNames {
-public:
-    std::string name(const std::string& base) {
-        std::string name = base;
-        uint32_t& next = nextNumber_.try_emplace(base, 2).first->second;
-        while (!taken_.insert(name).second) name = fmt::format("{}_{}", base, next++);
-        return name;
-    }
-
-private:
-    std::unordered_set<std::string> taken_;
-    std::unordered_map<std::string, uint32_t> nextNumber_;
-};
 
 ObjectValue valueOf(const rules::Value& value) {
     const bool plain = value.units[0] == rules::Unit::None || value.units[0] == rules::Unit::Metre;
@@ -99,7 +83,7 @@ private:
     ObjectNode nodeOf(ShapeId id, uint32_t parent) {
         const Shape& s = tree_.shapes[id];
         ObjectNode node;
-        node.name = names_.name(tree_.labels[s.label]);
+        node.name = names_.take(tree_.labels[s.label]);
         node.parent = parent;
         node.path = tree_.path(id);
         node.symbol = tree_.labels[s.label];

@@ -1,8 +1,5 @@
 #include "grammar/pipeline/scene.h"
 
-#include <fmt/format.h>
-
-#include <map>
 #include <set>
 #include <utility>
 
@@ -14,6 +11,7 @@
 #include "grammar/pipeline/meshing.h"
 #include "grammar/pipeline/missing.h"
 #include "grammar/pipeline/placed_models.h"
+#include "modeler/core/distinct_names.h"
 #include "modeler/mesh/connected_components.h"
 
 namespace sgm::pipeline {
@@ -58,13 +56,12 @@ public:
         std::vector<Made>& made = *meshed;
         out.meshWarnings = lacksOf(made);
         mesh::Scene* const scene = &out.scene;
-        std::map<std::string, uint32_t> numbers;
+        DistinctNames names;
         for (size_t i = 0; i < made.size(); ++i) {
             if (made[i].mesh.triangles.empty()) continue;
             meshed_[todo[i]] = static_cast<uint32_t>(scene->objects.size());
             mesh::SceneObject& object = scene->objects.emplace_back();
-            object.name = objects_.nameOf(objects_[todo[i]]);
-            if (const uint32_t number = ++numbers[object.name]; number > 1) object.name += fmt::format("_{}", number);
+            object.name = names.take(objects_.nameOf(objects_[todo[i]]));
             object.mesh = mesh::unpack(std::exchange(made[i].mesh, {}));
             object.provenance = std::move(made[i].provenance);
             object.values = objects_.valuesOf(objects_[todo[i]]);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "modeler/core/distinct_names.h"
 #include "modeler/export/formats.h"
 #include "modeler/export/gltf_nodes.h"
 
@@ -42,11 +43,13 @@ Status addMeshes(tinygltf::Model& model, const ExportInput& input, const ModelOf
 }
 
 void addPlaces(tinygltf::Model& model, const mesh::Scene& scene, const std::vector<int>& meshOf) {
+    DistinctNames names;
+    for (const tinygltf::Node& node : model.nodes) names.take(node.name);
     for (const mesh::Instance& instance : scene.instances) {
         const mesh::SceneObject& object = scene.objects[instance.object];
         const Pose& pose = instance.part.pose;
         tinygltf::Node node;
-        node.name = validUtf8(object.name);
+        node.name = names.take(validUtf8(object.name));
         node.mesh = meshOf[instance.object];
         node.translation = {pose.origin.x, pose.origin.y, pose.origin.z};
         if (pose.axes != Mat3{}) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "modeler/core/distinct_names.h"
 #include "modeler/export/formats.h"
 #include "modeler/export/levels.h"
 #include "modeler/export/origins.h"
@@ -73,7 +74,7 @@ public:
             // What is below an instance comes with what it refers to.
             if (shared_->isShared(i) && !shared_->isTop(objects, i)) kept[i] = false;
             if (!kept[i]) continue;
-            const std::string name = distinct(object.name);
+            const std::string name = names_.take(identifierOf(object.name));
             paths[i] = paths[object.parent] + "/" + name;
             const bool instance = shared_->isShared(i);
             out_.text(fmt::format("def Xform \"{}\" (\n    kind = \"subcomponent\"\n{}{})\n{{\n", name,
@@ -103,18 +104,13 @@ private:
                         "    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
                         v.x, v.y, v.z));
     }
-    std::string distinct(const std::string& name) {
-        std::string id = identifierOf(name);
-        for (int i = 2; !taken_.insert(id).second; ++i) id = fmt::format("{}_{}", identifierOf(name), i);
-        return id;
-    }
 
     OutFile& out_;
     const UsdSurface surface_;
     const SharedObjects* shared_;  ///< set where there are objects
     const std::string path_;       ///< of the prim that the objects lie in
     std::vector<uint32_t> local_;
-    std::set<std::string> taken_{"Materials", "Places", "Surface"};
+    DistinctNames names_{{"Materials", "Places", "Surface"}};
 };
 
 /// The parts behind the faces' origins, as lists beside each other.

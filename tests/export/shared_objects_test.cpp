@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <numeric>
+#include <set>
 
 #include "modeler/export/exporter.h"
 #include "tests/export/made_part.h"
@@ -135,6 +136,12 @@ TEST_F(Street, PlacesAreAllInTheSceneOfGltf) {
         std::vector<int> all(model.nodes.size() - 1);
         std::iota(all.begin(), all.end(), 1);
         EXPECT_EQ(model.nodes[0].children, all) << places;
+        std::set<std::string> names;
+        for (const tinygltf::Node& node : model.nodes) names.insert(node.name);
+        EXPECT_EQ(names.size(), model.nodes.size()) << places;
+        EXPECT_TRUE(names.contains("House") && names.contains("Shed")) << places;
+        EXPECT_EQ(names.contains("House_5"), places == "nodes");
+        EXPECT_EQ(model.meshes.size(), 2u) << "places share them";
         for (const tinygltf::BufferView& view : model.bufferViews) EXPECT_GT(view.byteLength, 0u);
     }
 }
