@@ -137,7 +137,7 @@ const Expr& chosen(const Expr& expr, const Place& place) {
 /// scope.x, or what a share along an axis is of.
 double extentOf(const Expr& expr, const Place& place) {
     if (expr.index < 3) return place.scope.size[static_cast<int>(expr.index)];
-    const int axis = static_cast<int>(expr.index) - 4;
+    const int axis = static_cast<int>(expr.index - rules::Expr::extentIndex);
     return place.extents_m ? (*place.extents_m)[axis] : place.scope.size[axis];
 }
 

@@ -1,6 +1,7 @@
 // size, move, turn, from: the scope of a newcomer, or before a shape that of the matched one.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "grammar/derive/attribute_context.h"
@@ -100,14 +101,31 @@ Vec3d extentsOf(const AttributeContext& context, const Attribute& attribute) {
     return extents;
 }
 
+/// Whether a measure has a share of the scope in it, as 100% - 1m has, which is metres by now.
+bool hasShare(const rules::Expr& e) {
+    return (e.kind == rules::Expr::Kind::Scope && e.index >= rules::Expr::extentIndex) ||
+           std::ranges::any_of(e.args, hasShare);
+}
+
+/// Whether a size along an axis goes with the scope, whose plan is stretched then.
+bool goesWithScope(const AttributeContext& context, const Attribute& attribute, int axis, rules::Unit unit) {
+    if (unit == rules::Unit::Share) return true;
+    if (rules::versionOf(context.grammar(), attribute.span) < 2) return false;
+    const rules::Expr& size = attribute.args[0];
+    const bool isTuple = size.kind == rules::Expr::Kind::Tuple && size.args.size() == 3;
+    return hasShare(isTuple ? size.args[static_cast<size_t>(axis)] : size);
+}
+
 void applySize(AttributeContext& context, const Attribute& attribute) {
     const Vec3d extents_m = extentsOf(context, attribute);
     derive::Place place = context.place;
     place.extents_m = &extents_m;
     const derive::Vector v = derive::vector(attribute.args[0], place, false);
     // An absolute size asks for a box: what is inherited of the plan stretches by shares alone.
-    const bool isAbsolute = v.unit[0] != rules::Unit::Share || v.unit[2] != rules::Unit::Share;
-    if (isAbsolute && !context.out.ownsFootprint) context.out.scope.footprint = derive::none;
+    const bool inherits = context.out.scope.footprint != derive::none && !context.out.ownsFootprint;
+    if (inherits &&
+        !(goesWithScope(context, attribute, 0, v.unit[0]) && goesWithScope(context, attribute, 2, v.unit[2])))
+        context.out.scope.footprint = derive::none;
     for (int i = 0; i < 3; ++i)
         context.out.scope.size[i] = v.unit[i] == rules::Unit::Share ? v.n[i] * extents_m[i] : v.n[i];
     context.out.sizeSpan = attribute.span;

@@ -23,7 +23,7 @@ struct Expr {
         Local,      ///< index into the frame of locals: `for` variables, `i` of a repeat
         Inherited,  ///< value.text: a value set by `with`, looked up the tree
         Scope,      ///< index 0 … 2: scope.x, .y, .z in metres; 3: scope.area, of its plan, in square metres;
-                    ///< 4 … 6: what shares along x, y, z are of, in metres
+                    ///< extentIndex … + 2: what shares along x, y, z are of, in metres
         Here,       ///< index 0 … 2: where the shape stands, metres in the object's frame
         Map,        ///< index into Grammar::maps: its value there
         Element,    ///< args[0][args[1]] of a vector (an axis indexes 0 … 5)
@@ -37,6 +37,7 @@ struct Expr {
                  ///< and value the local that counts its draws
         Figure,  ///< index is a Figure: in `check … expect`
     };
+    static constexpr uint32_t extentIndex = 4;
     Kind kind = Kind::Constant;
     bool asksUnits = false;  ///< over numbers of one unit, and a unit is known only while deriving: `with` sets a value
     SourceSpan span;

@@ -40,7 +40,7 @@ bool mixShares(Place& place, Typed& a, Typed& b) {
         Expr e;
         e.kind = Expr::Kind::Scope;
         e.span = span;
-        e.index = 4 + static_cast<uint32_t>(place.axis);
+        e.index = Expr::extentIndex + static_cast<uint32_t>(place.axis);
         return e;
     };
     const SourceSpan span = share->expr.span;

@@ -29,6 +29,15 @@ bool isOfScope(const Attribute& a) {
     return std::any_of(a.args.begin(), a.args.end(), [](const Expr& arg) { return asksScope(arg); });
 }
 
+bool hasShare(const Expr& e) {
+    return (e.kind == Expr::Kind::Number && e.unit == "%") || std::any_of(e.args.begin(), e.args.end(), hasShare);
+}
+/// Whether the value mixes a share of the scope with a length, as `100% - 1m` does.
+bool isMixed(const Expr& e) {
+    const bool isSum = e.kind == Expr::Kind::Binary && (e.text == "+" || e.text == "-");
+    return (isSum && hasShare(e.args[0]) != hasShare(e.args[1])) || std::any_of(e.args.begin(), e.args.end(), isMixed);
+}
+
 const Attribute* find(const std::vector<Attribute>& list, std::string_view name) {
     const auto found = std::find_if(list.begin(), list.end(), [&](const Attribute& a) { return a.name.text == name; });
     return found == list.end() ? nullptr : &*found;
@@ -155,6 +164,7 @@ private:
             order(e.before);
             order(e.after);
         }
+        stretch(e);
         for (const auto* list : {&e.before, &e.after})
             for (const Attribute& a : *list) cases(a.cases);
         cases(e.cases);
@@ -175,6 +185,15 @@ private:
             if (c.label && (isDrawn(*c.label) || counts(*c.label)))
                 note(c.label->span, "this size is drawn and counted anew for every repetition now",
                      "where all shall be alike, draw it before: 'let w = …' at the beginning of the body");
+    }
+
+    /// A size that mixes shares and lengths stretches the plan of its scope now.
+    void stretch(const Element& e) {
+        const Attribute* size = find(e, "size");
+        const bool hasPlans = ast_.source->text().find("footprint") != std::string_view::npos;
+        if (size && hasPlans && std::any_of(size->args.begin(), size->args.end(), isMixed))
+            note(size->span, "over a plan this size stretches the plan now; it was that of a box",
+                 "where a box is meant, write 'scope.x' for 100%");
     }
 
     /// `turn 90deg size 50%`: the share was of the axes before the turn, so the size comes first.

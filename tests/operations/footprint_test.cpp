@@ -49,6 +49,25 @@ TEST(Footprints, APlanInMetresSetsTheSizeAndAnExtrusionKeepsTheFoot) {
     EXPECT_NEAR(area(footprintOf(d, s)), 16 * 6 + 5 * 6, 1e-9);
 }
 
+TEST(Footprints, ASizeWithAShareStretchesThePlan) {
+    const auto areaWith = [](int version, const std::string& size) {
+        const Derivation d = derived("grammar " + std::to_string(version) +
+                                     "\nterminal wall\nstart A -> footprint ell(16, 12, 6, 5) extrude 7m Mass\n"
+                                     "rule Mass -> wall size " +
+                                     size + "\n");
+        const Shape s = solidsCalled(d, "wall")[0];
+        return s.scope.footprint == derive::none ? 0 : area(footprintOf(d, s));
+    };
+    const double whole = 16 * 6 + 5 * 6;
+    EXPECT_NEAR(areaWith(2, "(50%, 100%, 100%)"), whole / 2, 1e-9);
+    EXPECT_NEAR(areaWith(2, "(100% - 8m, 100%, 100%)"), whole / 2, 1e-9);
+    EXPECT_NEAR(areaWith(2, "(100% - 4m)"), whole * 12 / 16 * 8 / 12, 1e-9);
+    EXPECT_NEAR(areaWith(2, "(choose { 1: 100% - 8m }, 100%, 100%)"), whole / 2, 1e-9);
+    for (const char* box : {"(8m, 100%, 100%)", "(100%, 100%, 8m)", "(scope.x - 8m, 100%, 100%)", "8m"})
+        EXPECT_EQ(areaWith(2, box), 0) << box;
+    EXPECT_EQ(areaWith(1, "(100% - 8m, 100%, 100%)"), 0);
+}
+
 TEST(Footprints, AJointPlacesWhatIsExtruded) {
     const std::pair<const char*, Vec3d> cases[] = {{"+ footprint rect(2, 2) extrude 1m wall at +y", {0, 2.5, 0}},
                                                    {"+ wall at +y extrude 6m", {0, 5, 0}},

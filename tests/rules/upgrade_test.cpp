@@ -55,6 +55,13 @@ TEST(Upgrade, KeepsWhatShapesMeasureBy) {
     expectSameModel("let w = 2m cube size w + sphere size 50%", 1);
 }
 
+TEST(Upgrade, TellsOfPlansThatSizesStretch) {
+    const std::string body = "start A -> footprint rect(8, 6) extrude 3m B\nrule B -> block size ";
+    EXPECT_EQ(upgradedText("grammar 1\n" + body + "(100% - 1m, 100%, 100%)\n").notes.size(), 1u);
+    EXPECT_EQ(upgradedText("grammar 1\n" + body + "(50%, 1m, scope.z)\n").notes.size(), 0u);
+    EXPECT_EQ(upgradedText("grammar 1\nstart A -> cube size (100% - 1m)\n").notes.size(), 0u) << "no plan";
+}
+
 TEST(Upgrade, GivesTheFirstShapesSizeWhereNoScopeIsAsked) {
     expectSameModel("cube size (1m, 2m, 3m) - sphere move (1m, 0, 0) + cone size 1m at +y", 1);
     EXPECT_EQ(upgradedText("grammar 1\nstart A -> cube size 3m - B move (1m, 0, 0)\nrule B -> cube\n").text,
