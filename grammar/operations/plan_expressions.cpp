@@ -102,6 +102,14 @@ void checkCall(OperationChecker& checker, const Written& e, PlanExpr& plan) {
                           rules::nearestHint(name, known));
             return;
         }
+        const Written& arg = e.args[i];
+        if (row.parameters[index].kind == PlanParameterKind::Count && arg.kind == Written::Kind::Number &&
+            !arg.unit.empty()) {
+            checker.error(arg.span,
+                          fmt::format("'{}' of '{}' is a number without a unit", row.parameters[index].name, row.name),
+                          fmt::format("as in '{}'", row.example));
+            return;
+        }
         checker.beginDraws(fmt::format("footprint.{}", row.parameters[index].name));
         plan.args[index] = checker.expression(e.args[i], wantOf(row.parameters[index].kind),
                                               fmt::format("'{}' of '{}'", row.parameters[index].name, row.name));
@@ -187,6 +195,25 @@ bool checkFile(OperationChecker& checker, const Written& e, PlanExpr& plan) {
     return index.has_value();
 }
 
+/// What other programs call our plans.
+constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
+    {"circle", "write 'round(48, 5m)', its sides and its radius"},
+    {"ellipse", "write 'round(48)', which fills its scope: 'size (9, 3, 5) footprint round(48) block'"},
+    {"polygon", "write 'outline((0, 0), (8, 0), (8, 6))'"},
+    {"rectangle", "write 'rect(8, 6)'"},
+    {"square", "write 'rect(8, 6)'"}};
+
+/// What to write instead of a plan that isn't known.
+std::string hintForPlan(const OperationChecker& checker, const std::string& name) {
+    const auto foreign = std::ranges::find(elsewhere, name, &std::pair<std::string_view, std::string_view>::first);
+    if (foreign != std::end(elsewhere)) return std::string(foreign->second);
+    std::vector<std::string> known{"outline", "file", "walls"};
+    for (const rules::PlanRow& row : rules::planRows()) known.emplace_back(row.name);
+    for (const rules::Lsystem& lsystem : checker.grammar().lsystems) known.push_back(lsystem.name);
+    const std::string near = rules::nearestHint(name, known);
+    return near.empty() ? fmt::format("write one of {}, or the name of an lsystem", fmt::join(known, ", ")) : near;
+}
+
 bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
     plan.span = e.span;
     const bool isUnion = e.kind == Written::Kind::Binary && e.text == "+";
@@ -212,13 +239,8 @@ bool checkInto(OperationChecker& checker, const Written& e, PlanExpr& plan) {
         return true;
     }
     if (e.kind == Written::Kind::Error) return false;
-    std::vector<std::string> known{"outline", "file", "walls"};
-    for (const rules::PlanRow& row : rules::planRows()) known.emplace_back(row.name);
-    for (const rules::Lsystem& lsystem : checker.grammar().lsystems) known.push_back(lsystem.name);
-    const std::string near = rules::nearestHint(e.text, known);
-    checker.unknownName(
-        e.span, e.text, fmt::format("'{}' draws no footprint", e.span.text()),
-        near.empty() ? fmt::format("write one of {}, or the name of an lsystem", fmt::join(known, ", ")) : near);
+    checker.unknownName(e.span, e.text, fmt::format("'{}' draws no footprint", e.span.text()),
+                        hintForPlan(checker, e.text));
     return false;
 }
 

@@ -149,7 +149,7 @@ constinit const Operation size{
     .doc = "Sets the size of the scope about its centre.",
     .example = "cube size (12, 3.5, 9)",
     .arguments = sizeArguments,
-    .range = {1e-6, most_m, "at least 0.000001m, and at most 1000 km"},
+    .range = {1e-6, most_m, "at least 0.000001m, and at most 1000 km", "a solid has some thickness: write '.1m' for 0"},
     .traits = {.beforeShape = true},
     .apply = applySize,
 };

@@ -12,6 +12,7 @@
 #include "grammar/rules/make.h"
 #include "grammar/rules/operation_checker.h"
 #include "grammar/rules/words.h"
+#include "grammar/syntax/hints.h"
 
 namespace sgm::rules {
 namespace {
@@ -177,7 +178,9 @@ Expr loopDomain(CheckContext& ctx, Place& place, const Written& e, Type& type) {
     if (e.kind != Written::Kind::Error)
         ctx.diagnostics.error(
             e.span,
-            fmt::format("a loop runs over 'axes', 'sides', a range 1..n or a list (a, b, c), not '{}'", e.span.text()));
+            fmt::format("a loop runs over 'axes', 'sides', a range 1..n or a list (a, b, c), not '{}'", e.span.text()),
+            e.kind == Written::Kind::Number ? fmt::format("write '1..{}'", e.span.text())
+                                            : syntax::foreignFunctionHint(e.text));
     type = Type::unknown();
     return result;
 }

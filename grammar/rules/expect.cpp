@@ -120,8 +120,10 @@ bool expectType(CheckContext& ctx, const Typed& value, Want want, std::string_vi
                    : fmt::format("write a length such as '{:.12g}m'", written->number);
     if ((isSize || want == Want::Offset) && value.type.like.kind == Value::Kind::Vector && value.type.like.count > 3)
         hint = "write x, y and z; the decimal point is '.', as in '3.5'";
-    if (want == Want::Size && value.type.like.kind == Value::Kind::Vector && value.type.like.count == 2)
-        hint = "write all three, x, y and z, as in '(10, 1, 3)'";
+    const bool isPair = value.type.like.kind == Value::Kind::Vector && value.type.like.count == 2;
+    if (isPair && (want == Want::Size || want == Want::Offset || want == Want::Angles))
+        hint = fmt::format("write all three, x, y and z, as in '{}'",
+                           want == Want::Angles ? "(0deg, 90deg, 0deg)" : "(10, 1, 3)");
     const bool isTriple = written && written->kind == Written::Kind::Tuple && written->args.size() == 3;
     if (isTriple && want == Want::Axis) hint = fmt::format("write 'move {}' to place it freely", written->span.text());
     if (isTriple && want == Want::Color) hint = "write 'rgb(…)' with three shares from 0 to 1, or '#rrggbb'";

@@ -97,7 +97,7 @@ void OperationChecker::checkArguments(const syntax::Attribute& written) {
                     error(e.span, outside,
                           range.hi == 1 && v.units[0] == Unit::None && v.n[i] >= 10 && v.n[i] <= 100
                               ? fmt::format("write '{:g}%'", v.n[i])
-                              : "");
+                              : std::string(v.n[i] == 0 ? range.ofZero : ""));
             }
         });
     }

@@ -11,6 +11,7 @@
 #include "grammar/rules/plans.h"
 #include "grammar/rules/solid_arguments.h"
 #include "grammar/rules/words.h"
+#include "modeler/core/lower_case.h"
 #include "modeler/field/plan_parameters.h"
 #include "modeler/plan/edge_words.h"
 
@@ -91,12 +92,22 @@ Operator operatorOf(std::string_view text) {
 
 /// What other programs call our solids and operators.
 constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
-    {"box", "did you mean 'cube'?"},      {"ball", "did you mean 'sphere'?"},
-    {"tube", "did you mean 'cylinder'?"}, {"ring", "did you mean 'torus'?"},
-    {"union", "join shapes with '+'"},    {"difference", "cut with '-'"},
-    {"subtract", "cut with '-'"},         {"intersection", "keep with '&' what both share"},
-    {"i", "write 'mesh(\"file.obj\")'"},  {"s", "write 'size (x, y, z)' behind a shape"},
-    {"t", "write 'move (x, y, z)'"},      {"r", "write 'turn (x, y, z)'"}};
+    {"box", "did you mean 'cube'?"},
+    {"ball", "did you mean 'sphere'?"},
+    {"tube", "did you mean 'cylinder'?"},
+    {"ring", "did you mean 'torus'?"},
+    {"union", "join shapes with '+'"},
+    {"difference", "cut with '-'"},
+    {"subtract", "cut with '-'"},
+    {"intersection", "keep with '&' what both share"},
+    {"circle", "write 'cylinder size (x, y, z)', or 'footprint round(48, 5m) extrude 3m block'"},
+    {"ellipse", "write 'cylinder size (x, y, z)', or 'size (9, 3, 5) footprint round(48) block'"},
+    {"polygon", "write 'footprint outline((0, 0), (8, 0), (8, 6)) extrude 3m block'"},
+    {"square", "write 'footprint rect(8, 6) extrude 3m block'"},
+    {"i", "write 'mesh(\"file.obj\")'"},
+    {"s", "write 'size (x, y, z)' behind a shape"},
+    {"t", "write 'move (x, y, z)'"},
+    {"r", "write 'turn (x, y, z)'"}};
 
 /// What other programs give a solid: here its scope has it.
 constexpr std::string_view extents[] = {"radius", "r", "diameter", "d", "width", "height", "h", "depth", "length"};
@@ -278,6 +289,15 @@ Solid checkNamedSolid(CheckContext& ctx, Place& place, const Written& e) {
     return nil;
 }
 
+/// 'roofHip' and 'roofGable' of other programs; "" where no roof is meant.
+std::string hintForRoof(std::string_view word) {
+    constexpr std::string_view roof = "roof";
+    if (!word.starts_with(roof) || word.size() == roof.size()) return {};
+    std::string name(word.substr(roof.size()));
+    name = lowerCase(name.substr(0, 1)) + name.substr(1) + "Roof";
+    return field::findPrimitive(name) ? fmt::format("did you mean '{}'?", name) : std::string();
+}
+
 }  // namespace
 
 std::string hintForSolid(CheckContext& ctx, std::string_view word) {
@@ -291,6 +311,7 @@ std::string hintForSolid(CheckContext& ctx, std::string_view word) {
     std::vector<std::string> known = symbolNames(ctx, true);
     for (const field::Primitive& row : field::primitives()) known.emplace_back(row.name);
     std::string near = nearestHint(word, known);
+    if (near.empty()) near = hintForRoof(word);
     if (near.empty() && plan::isCommonEdgeWord(word)) return "the parts of a block are set apart by '|'";
     return near.empty() && isNonTerminal(word) ? fmt::format("write 'rule {} -> …'", word) : near;
 }

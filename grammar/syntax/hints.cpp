@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <span>
 
 #include "grammar/syntax/foreign_lengths.h"
 
@@ -32,71 +31,31 @@ constexpr Lookalike lookalikes[] = {
     {"?", "write 'if(condition, a, b)'"},
 };
 
-constexpr ForeignDeclaration foreignDeclarations[] = {
-    {"import", "use", "write 'use'"},
-    {"include", "use", "write 'use'"},
-    {"require", "use", "write 'use'"},
-    {"const", "let", "write 'let'"},
-    {"var", "let", "there are no variables: write 'let'"},
-    {"parameter", "param", "write 'param'"},
-    {"attr", "param", "write 'param'"},
-};
-
-struct ForeignWord {
-    std::string_view word, hint;
-};
-constexpr ForeignWord foreignAttributes[] = {
-    {"translate", "write 'move'"},
-    {"position", "write 'move'"},
-    {"offset", "write 'move'"},
-    {"rotate", "write 'turn'"},
-    {"rotation", "write 'turn'"},
-    {"scale", "write 'size'"},
-    {"radius", "write 'size' with the whole extent: 'sphere size 2' has a radius of 1m"},
-    {"diameter", "write 'size'"},
-    {"width", "write 'size (x, y, z)': x is the width"},
-    {"height", "write 'size (x, y, z)': y is the height"},
-    {"depth", "write 'size (x, y, z)': z is the depth"},
-    {"free", "write 'at free(…)'"},
-    {"last", "write 'on last'"},
-    {"material", "write 'of' and a material, as 'of stone', or 'color #c8b090'"},
-    {"roughness", "write 'rough'"},
-    {"metalness", "write 'metal'"},
-    {"repeat",
-     "a rule repeats: 'rule Storey repeat 3 -> …'; copies are 'for k in 1..3 { … }', parts of a split '{ … }3'"},
-    {"comp", "write 'faces { front: Wall | side: Wall | top: Roof }'"},
-    {"s", "write 'size'"},
-    {"t", "write 'move'"},
-    {"r", "write 'turn'"},
-    {"difference", "write 'a - b'"},
-    {"union", "write 'a + b'"},
-    {"noise", "write 'displace billow(.05m, 2/m)' or 'displace fbm(.05m, 2/m, 4)'"},
-    {"fbm", "write 'displace fbm(.05m, 2/m, 4)'"},
-    {"intersection", "write 'a & b'"},
-};
-
-constexpr ForeignWord foreignFunctions[] = {
-    {"mod", "write 'a % b'"},
-    {"fmod", "write 'a % b'"},
-    {"mix", "write 'lerp(a, b, t)'"},
-    {"power", "write 'pow(x, y)'"},
-    {"atan", "write 'atan2(rise, run)'"},
-    {"rand", "write what is drawn as a range, '1m..3m'"},
-    {"random", "write what is drawn as a range, '1m..3m'"},
-    {"uniform", "write what is drawn as a range, '1m..3m'"},
-    {"radians", "write an angle with its unit, '30deg'"},
-    {"noise", "write 'fbm(size, octaves)'"},
-};
-
 constexpr std::string_view ifMend = "bodies choose by 'when condition { … }', values by 'if(condition, a, b)'";
+
+/// A token as other languages have it, where the reader refuses it, and what is written instead.
+struct ForeignForm {
+    std::string_view before;   ///< the token before it; "" for any
+    std::string_view token;    ///< at the cursor
+    std::string_view refusal;  ///< how the message begins that the reader would give
+    std::string_view instead;  ///< the message; "" for that one
+    std::string_view hint;
+};
+constexpr ForeignForm foreignForms[] = {
+    {"", "{", "expected a shape", "", "'(a + b)' groups shapes"},
+    {"", "[", "expected a value", "", "a vector stands in parentheses: write '(x, y, z)'"},
+    {"", "[", "unexpected", "",
+     "there are no brackets: '(a + b)' groups shapes, and ',' sets those apart that stand side by side"},
+    {"", "is", "expected '->'", "there is no 'is'", "write '=='"},
+    {"", "else", "", "there is no 'else'", "write 'when not condition { … }' for the other case"},
+    {"for", "(", "expected the name of a loop variable", "", "write 'for i in 0..5 { … }'"},
+    {"", ":", "expected '{'", "", "a body stands in braces: '{ … }'"},
+    {"}", "*", "unexpected", "", "what repeats stands in braces of its own, within the block: '{ { ~2m: Part }* }'"},
+    {"", "*", "unexpected", "", "what two shapes share is 'a & b'; a calculation stands in parentheses"},
+};
 
 constexpr std::string_view roofForms[] = {"hip",  "gable",     "halfHip", "mansard", "gambrel", "saltbox",
                                           "shed", "butterfly", "flat",    "pyramid", "dome",    "bell"};
-
-std::string hintIn(std::span<const ForeignWord> words, std::string_view word) {
-    const auto row = std::find_if(words.begin(), words.end(), [&](const ForeignWord& w) { return w.word == word; });
-    return row == words.end() ? std::string() : std::string(row->hint);
-}
 
 /// How many tokens back the word is before the parenthesis that the token before the cursor closes; 0 without one.
 size_t calleeBefore(const Cursor& cursor) {
@@ -226,6 +185,44 @@ std::optional<Hint> withoutWord(const Cursor& cursor, std::string_view message) 
     return {};
 }
 
+/// A call of what other programs have: `translate (1, 2, 3) cube`, `translate([1, 2, 3]) cube`, `union() { … }`.
+std::optional<Hint> foreignCall(const Cursor& cursor, std::string_view message) {
+    const Token last = cursor.previous(1);
+    const std::string_view before = cursor.text(last);
+    const bool isBehind = before == ")" && (cursor.at("{") || message.ends_with("can't follow a shape"));
+    const bool isWithin = cursor.at("[") && before == "(";
+    const bool isName = last.kind == Token::Kind::Word && (cursor.at("{") || cursor.at("("));
+    if (!isBehind && !isWithin && !isName) return {};
+    const Token word = cursor.previous(isBehind ? std::max<size_t>(calleeBefore(cursor), 1) : isWithin ? 2 : 1);
+    const std::string fix = foreignAttributeHint(cursor.text(word));
+    if (fix.empty()) return {};
+    const bool isAttribute = fix == "write 'move'" || fix == "write 'turn'" || fix == "write 'size'";
+    return Hint{cursor.span(word), "there is no " + quoted(cursor.text(word)),
+                fix + (isAttribute ? " behind a shape" : "")};
+}
+
+/// Extents as arguments: `cube (10, 10, 10)`.
+std::optional<Hint> extentsBehindName(const Cursor& cursor, std::string_view message) {
+    const Token name = cursor.previous(1);
+    if (!cursor.at("(") || !message.ends_with("can't follow a shape") || name.kind != Token::Kind::Word) return {};
+    constexpr std::string_view shape[] = {",", ",", ")"};
+    for (size_t i = 0; i < std::size(shape); ++i)
+        if (!cursor.at(Token::Kind::Number, 1 + 2 * i) || !cursor.at(shape[i], 2 + 2 * i)) return {};
+    const SourceSpan extents = join(cursor.span(cursor.peek()), cursor.span(cursor.peek(6)));
+    return Hint{extents, std::string(message),
+                "write " + quoted(std::string(cursor.text(name)) + " size " + std::string(extents.text()))};
+}
+
+/// A row of the table of forms.
+std::optional<Hint> foreignForm(const Cursor& cursor, std::string_view message) {
+    const std::string_view before = cursor.text(cursor.previous(1));
+    for (const ForeignForm& row : foreignForms)
+        if (cursor.at(row.token) && message.starts_with(row.refusal) && (row.before.empty() || row.before == before))
+            return Hint{cursor.span(cursor.peek()), std::string(row.instead.empty() ? message : row.instead),
+                        std::string(row.hint)};
+    return {};
+}
+
 /// Words and forms of other shape grammars: `comp(f) { … }`, `case x > 5: …`, `30%: …` as a body,
 /// `size 10 10 10`.
 std::optional<Hint> ofOtherGrammars(const Cursor& cursor, std::string_view message) {
@@ -236,28 +233,11 @@ std::optional<Hint> ofOtherGrammars(const Cursor& cursor, std::string_view messa
     if (cursor.text(last) == "case" && message.ends_with("can't follow a shape"))
         return Hint{cursor.span(last), "there is no 'case'",
                     "a rule's condition stands before '->': 'rule B when … -> …'; " + std::string(ifMend)};
-    if (cursor.at("{") && message.starts_with("expected a shape"))
-        return Hint{cursor.span(token), std::string(message), "'(a + b)' groups shapes"};
-    if (cursor.at("{") || (cursor.at("(") && last.kind == Token::Kind::Word)) {
-        const size_t back = cursor.text(last) == ")" ? calleeBefore(cursor) : 1;
-        const Token word = cursor.previous(std::max<size_t>(back, 1));
-        const std::string fix = foreignAttributeHint(cursor.text(word));
-        const bool isAttribute = fix == "write 'move'" || fix == "write 'turn'" || fix == "write 'size'";
-        if (!fix.empty())
-            return Hint{cursor.span(word), "there is no " + quoted(cursor.text(word)),
-                        fix + (isAttribute ? " behind a shape" : "")};
-    }
-    if (cursor.at("[") && message.starts_with("expected a value"))
-        return Hint{cursor.span(token), std::string(message), "a vector stands in parentheses: write '(x, y, z)'"};
+    if (auto call = foreignCall(cursor, message)) return call;
     if (cursor.at("weight") && message.starts_with("unexpected") && cursor.at(Token::Kind::Number, 1))
         return Hint{cursor.span(token), "unexpected 'weight'",
                     "a rule's weight stands before '->': write " +
                         quoted("weight " + std::string(cursor.peekText(1)) + " -> …")};
-    if (cursor.at("[") && message.starts_with("unexpected"))
-        return Hint{cursor.span(token), "unexpected '['",
-                    "there are no brackets: '(a + b)' groups shapes, and ',' sets those apart that stand side by side"};
-    if (cursor.at("is") && message.starts_with("expected '->'"))
-        return Hint{cursor.span(token), "there is no 'is'", "write '=='"};
     if (cursor.text(last) == "->" && token.kind == Token::Kind::Number && cursor.at(":", 1))
         return Hint{cursor.span(token), "expected a shape, found " + found,
                     "write 'choose { 3: this | 7: that }', or two rules with 'weight 3' and 'weight 7'"};
@@ -270,6 +250,8 @@ std::optional<Hint> ofOtherGrammars(const Cursor& cursor, std::string_view messa
                         quoted(std::string(attribute) + " (" + std::string(cursor.text(last)) + ", " +
                                std::string(cursor.text(token)) + ", " + third + ")")};
     }
+    if (auto extents = extentsBehindName(cursor, message)) return extents;
+    if (auto form = foreignForm(cursor, message)) return form;
     return behindOperation(cursor, message);
 }
 
@@ -312,8 +294,6 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
     if (token.kind == Token::Kind::Color && (text == "#" || token.columnOne))
         return Hint{cursor.span(token), "a comment doesn't begin with '#'",
                     "a comment begins with '//' and ends with its line"};
-    if (text == "else")
-        return Hint{cursor.span(token), "there is no 'else'", "write 'when not condition { … }' for the other case"};
     if (text == "if" && !(cursor.at("(", 1) && cursor.peek(1).glued))
         return Hint{cursor.span(token), "there is no 'if' here", std::string(ifMend)};
     if (before == "if") return Hint{cursor.span(cursor.previous(1)), "there is no 'if' here", std::string(ifMend)};
@@ -352,20 +332,7 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
         return Hint{cursor.span(token), "unexpected ':'",
                     "a name for rules stands behind a shape, within the braces or behind parentheses: "
                     "'{ cube : Part }', '(a + b) : Part'"};
-    if (text == "*" && message.starts_with("unexpected"))
-        return Hint{cursor.span(token), "unexpected '*'",
-                    "what two shapes share is 'a & b'; a calculation stands in parentheses"};
     return std::nullopt;
 }
-
-const ForeignDeclaration* findForeignDeclaration(std::string_view word) {
-    const auto row = std::find_if(std::begin(foreignDeclarations), std::end(foreignDeclarations),
-                                  [&](const ForeignDeclaration& d) { return d.word == word; });
-    return row == std::end(foreignDeclarations) ? nullptr : row;
-}
-
-std::string foreignAttributeHint(std::string_view word) { return hintIn(foreignAttributes, word); }
-
-std::string foreignFunctionHint(std::string_view word) { return hintIn(foreignFunctions, word); }
 
 }  // namespace sgm::syntax

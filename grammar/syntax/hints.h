@@ -20,7 +20,8 @@ struct Hint {
 /// `message` and the token at the cursor stay where the habit needs no other.
 std::optional<Hint> findHint(const Cursor& cursor, std::string_view message);
 
-/// The declaration that a word of another language stands for ("import": "use"), with the fix; null for other words.
+/// The declaration that a word of another language stands for ("import": "use"; "" where its line is written another
+/// way), with the fix; null for other words.
 struct ForeignDeclaration {
     std::string_view word, means, hint;
 };

@@ -67,7 +67,8 @@ struct OperationArgument {
 /// Numbers that an operation takes, per component; both ends included.
 struct OperationRange {
     double lo = -std::numeric_limits<double>::infinity(), hi = std::numeric_limits<double>::infinity();
-    std::string_view text;  ///< "at most 1": what a message says that the number must be; empty: any number
+    std::string_view text;         ///< "at most 1": what a message says that the number must be; empty: any number
+    std::string_view ofZero = {};  ///< what to write instead of a 0 that it isn't; "" for nothing
 };
 
 struct Operation;

@@ -22,9 +22,13 @@ void refuse(Cursor& cursor) {
         std::vector<std::string> words;
         for (const Declaration& d : declarations()) words.emplace_back(d.word);
         const std::string near = didYouMean(cursor.peekText(), words);
+        const ForeignDeclaration* foreign = findForeignDeclaration(cursor.peekText());
         const bool isRule = cursor.at("->", 1) || (cursor.at("-", 1) && cursor.at("->", 2));
         cursor.fail(cursor.found() + " begins no declaration",
-                    isRule         ? "write " + quoted("rule " + std::string(cursor.peekText()) + " -> …")
+                    foreign             ? std::string(foreign->hint)
+                    : isRule            ? "write " + quoted("rule " + std::string(cursor.peekText()) + " -> …")
+                    : cursor.at("=", 1) ? "write " + quoted("let " + std::string(cursor.peekText()) + " = …") +
+                                              ", or 'param' for what users may change"
                     : near.empty() ? "later lines of a declaration are indented"
                                    : "did you mean " + quoted(near) + "?");
     } else {
@@ -39,7 +43,7 @@ void refuse(Cursor& cursor) {
 const Declaration* declarationAt(Cursor& cursor) {
     if (const Declaration* declaration = findDeclaration(cursor.peekText())) return declaration;
     const ForeignDeclaration* foreign = cursor.peek().columnOne ? findForeignDeclaration(cursor.peekText()) : nullptr;
-    if (!foreign) return nullptr;
+    if (!foreign || foreign->means.empty()) return nullptr;
     cursor.complain(cursor.span(cursor.peek()), cursor.found() + " begins no declaration", std::string(foreign->hint));
     return findDeclaration(foreign->means);
 }
