@@ -306,6 +306,20 @@ Element checkElement(CheckContext& ctx, Place& place, const syntax::Element& wri
     return out;
 }
 
+/// A shape of a sibling that is alone in it and only says how large it is, or where.
+void warnOfNothing(CheckContext& ctx, const std::vector<syntax::Element>& chain, const std::vector<Element>& checked) {
+    const auto isShape = [](const syntax::Element& e) { return e.kind != syntax::Element::Kind::Let; };
+    const auto alone = std::ranges::find_if(chain, isShape);
+    if (std::ranges::count_if(chain, isShape) != 1 || alone->kind != syntax::Element::Kind::Shape) return;
+    const Element& element = checked[static_cast<size_t>(alone - chain.begin())];
+    const bool reports = std::ranges::any_of(
+        element.prefix, [](const Attribute& a) { return a.operation->phase == Operation::Phase::Whole; });
+    const bool names = alone->solid || !alone->live.empty() || !element.label.empty();
+    if (alone->before.empty() || names || element.op != Operator::None || reports) return;
+    ctx.diagnostics.warning(alone->span, "this adds nothing: it names no shape",
+                            "name one behind it, such as 'cube', or write 'nil' where nothing is meant");
+}
+
 }  // namespace
 
 Body checkBody(CheckContext& ctx, Place& place, const syntax::Body& written) {
@@ -315,6 +329,7 @@ Body checkBody(CheckContext& ctx, Place& place, const syntax::Body& written) {
     for (const auto& chain : written.siblings) {
         std::vector<Element>& elements = result.siblings.emplace_back();
         for (const syntax::Element& e : chain) elements.push_back(checkElement(ctx, place, e));
+        warnOfNothing(ctx, chain, elements);
         if (!elements.empty() && elements.back().kind == Element::Kind::Let)
             ctx.diagnostics.error(elements.back().span, "no shape stands behind this value",
                                   "write the shape behind it");

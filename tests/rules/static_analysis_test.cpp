@@ -34,6 +34,19 @@ TEST(Endless, SharesOfASplitAreNamed) {
     EXPECT_EQ(judged("rule A -> split x { 50%: A | ~1: cube }\nrule A -> cube\n"), "") << "drawn by weight";
 }
 
+TEST(Siblings, WithoutAShapeAreTold) {
+    const std::string told = "warning: this adds nothing: it names no shape\n";
+    EXPECT_EQ(judged("rule A -> cube, size 1m\n"), told);
+    EXPECT_EQ(judged("rule A -> size 1m\n"), told);
+    EXPECT_EQ(judged("rule A -> + (move (0, 1m, 0)) at +y\n"), told);
+    EXPECT_EQ(judged("rule A -> let w = 1m..2m size w\n"), told);
+    EXPECT_EQ(judged("rule A -> split x { ~1: footprint rect(2, 2) extrude 1m | ~1: cube }\n"), told);
+    EXPECT_EQ(judged("rule A -> cube, size 1m report gfa (scope.area)\n"), "") << "a sum is what it is for";
+    EXPECT_EQ(judged("rule A -> size 4m + cube at +y\n").find("adds nothing"), std::string::npos)
+        << "cubes stand on it";
+    EXPECT_EQ(judged("rule A -> nil, size 1m row 3 along x { cube }\n"), "");
+}
+
 TEST(WaitingCycles, AreToldOnce) {
     EXPECT_EQ(judged("rule A -> cube : B, cube : C\nrule B after C -> cube\nrule C after B -> cube\n"),
               "warning: 'B' waits for 'C', and 'C' waits for 'B': nothing decides which comes first\n");
