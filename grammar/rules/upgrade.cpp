@@ -190,8 +190,7 @@ private:
     /// A size that mixes shares and lengths stretches the plan of its scope now.
     void stretch(const Element& e) {
         const Attribute* size = find(e, "size");
-        const bool hasPlans = ast_.source->text().find("footprint") != std::string_view::npos;
-        if (size && hasPlans && std::any_of(size->args.begin(), size->args.end(), isMixed))
+        if (size && hasPlans_ && std::any_of(size->args.begin(), size->args.end(), isMixed))
             note(size->span, "over a plan this size stretches the plan now; it was that of a box",
                  "where a box is meant, write 'scope.x' for 100%");
     }
@@ -279,6 +278,7 @@ private:
     }
 
     const syntax::Ast& ast_;
+    const bool hasPlans_ = ast_.source->text().find("footprint") != std::string_view::npos;
     Upgrade result_;
     std::vector<Edit> edits_;
     std::set<const Element*> moved_;
