@@ -209,6 +209,7 @@ std::optional<Hint> extentsBehindName(const Cursor& cursor, std::string_view mes
     for (size_t i = 0; i < std::size(shape); ++i)
         if (!cursor.at(Token::Kind::Number, 1 + 2 * i) || !cursor.at(shape[i], 2 + 2 * i)) return {};
     const SourceSpan extents = join(cursor.span(cursor.peek()), cursor.span(cursor.peek(6)));
+    if (extents.text().find("deg") != std::string_view::npos) return {};
     return Hint{extents, std::string(message),
                 "write " + quoted(std::string(cursor.text(name)) + " size " + std::string(extents.text()))};
 }
