@@ -24,13 +24,13 @@ struct Setting {
     bool isEnd = false;   ///< one end of a range, of which less is asked
 };
 
-/// Where an error says it is, if that is in one of the grammar's files.
-syntax::SourceSpan placeOf(const document::Problem& problem, const rules::Grammar& grammar) {
+/// The text that an error is about, `extent` bytes from where it says it is, if that is in one of the grammar's files.
+syntax::SourceSpan placeOf(const document::Problem& problem, uint32_t extent, const rules::Grammar& grammar) {
     for (const syntax::SourcePtr& source : grammar.sources) {
         if (printable(source->name()) != problem.file || problem.line == 0) continue;
         const std::string_view line = source->line(problem.line);
         const auto begin = static_cast<uint32_t>(line.data() - source->text().data()) + problem.column - 1;
-        return {source.get(), begin, begin + 1};
+        return {source.get(), begin, begin + std::max(extent, 1u)};
     }
     return {};
 }
@@ -217,10 +217,10 @@ private:
         if (!blocks.ok()) return blocks.error();
         if (!blocks->empty()) return Done{};
         const derive::Shape& root = model.derivation.tree.shapes[0];
-        return Error{Error::Kind::Input,
-                     fmt::format("{}nothing solid is left of '{}': all is cut away; move the cutters, or "
-                                 "make them smaller",
-                                 syntax::placeText(root.span), model.derivation.tree.path(0))};
+        return syntax::errorAt(root.span, Error::Kind::Input,
+                               fmt::format("nothing solid is left of '{}': all is cut away; move the cutters, or make "
+                                           "them smaller",
+                                           model.derivation.tree.path(0)));
     }
 
     static std::string prefixed(const std::string& words, const std::string& message) {
@@ -230,7 +230,7 @@ private:
     /// An error of the main model, or a warning for another; once a place and sentence.
     void tell(const Error& error, const std::string& words, bool isMain) {
         const document::Problem problem = document::problemOf(error);
-        const syntax::SourceSpan span = placeOf(problem, *grammar_);
+        const syntax::SourceSpan span = placeOf(problem, error.extent, *grammar_);
         // One warning a place: at other settings it is another number or path.
         if (!said_.insert(keyOf(span, words.empty() ? problem.message : std::string())).second) return;
         const std::string message = prefixed(words, span.source ? problem.message : error.message);

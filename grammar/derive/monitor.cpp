@@ -7,7 +7,7 @@ namespace sgm::derive {
 void Monitor::fail(Error::Kind kind, const std::string& what, syntax::SourceSpan span, const char* fix) {
     if (failure_) return;
     const auto& grammar = *derivation_.grammar;
-    std::string text = syntax::placeText(span) + what;
+    std::string text = what;
     text += rule_ == none ? std::string(" in the start") : fmt::format(" in rule '{}'", grammar.rules[rule_].name);
     if (shape_ < derivation_.tree.shapes.size()) text += fmt::format(" at {}", derivation_.tree.path(shape_));
     text += fmt::format(", seed {}", derivation_.seed);
@@ -15,7 +15,7 @@ void Monitor::fail(Error::Kind kind, const std::string& what, syntax::SourceSpan
         if (r.span.source == span.source && r.span.begin >= span.begin && r.span.end <= span.end)
             text += "; " + r.message;
     if (*fix) text += fmt::format("; {}", fix);
-    failure_ = Error{kind, std::move(text)};
+    failure_ = syntax::errorAt(span, kind, text);
 }
 
 syntax::SourceSpan Monitor::here() const {

@@ -157,12 +157,11 @@ Error nothingSolid(const Derivation& derivation) {
     syntax::Diagnostics causes = derivation.selections.warnings(&derivation.tree);
     if (causes.all().empty()) causes = warnings(derivation);
     if (causes.all().empty())
-        return {Error::Kind::Input,
-                syntax::placeText(derivation.tree.shapes[0].span) +
-                    fmt::format("nothing solid is left of '{}': name a solid in it, such as 'cube'", root)};
+        return syntax::errorAt(derivation.tree.shapes[0].span, Error::Kind::Input,
+                               fmt::format("nothing solid is left of '{}': name a solid in it, such as 'cube'", root));
     const syntax::Diagnostic& cause = causes.all().front();
-    return {Error::Kind::Input, syntax::placeText(cause.span) + fmt::format("{}, and nothing solid is left of '{}'; {}",
-                                                                            cause.message, root, cause.hint)};
+    return syntax::errorAt(cause.span, Error::Kind::Input,
+                           fmt::format("{}, and nothing solid is left of '{}'; {}", cause.message, root, cause.hint));
 }
 
 syntax::Diagnostics warnings(const Derivation& derivation) {

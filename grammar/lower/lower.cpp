@@ -281,15 +281,15 @@ Status Lowering::run(Progress* progress) {
     if (!done.ok()) return done;
     plans_.clear();
     if (noted_.refused != none)
-        return Error{Error::Kind::Budget,
-                     fmt::format("{}'{}' is cladding in cladding in cladding: each level doubles the work; clad the "
-                                 "parts, or fewer levels",
-                                 syntax::placeText(tree_.shapes[noted_.refused].span), tree_.path(noted_.refused))};
+        return syntax::errorAt(tree_.shapes[noted_.refused].span, Error::Kind::Budget,
+                               fmt::format("'{}' is cladding in cladding in cladding: each level doubles the work; "
+                                           "clad the parts, or fewer levels",
+                                           tree_.path(noted_.refused)));
     if (noted_.boundless != none)
-        return Error{Error::Kind::Input,
-                     fmt::format("{}'{}': so much noise lies on noise that nobody can tell how far it reaches; "
-                                 "displace less often, or by less",
-                                 syntax::placeText(tree_.shapes[noted_.boundless].span), tree_.path(noted_.boundless))};
+        return syntax::errorAt(tree_.shapes[noted_.boundless].span, Error::Kind::Input,
+                               fmt::format("'{}': so much noise lies on noise that nobody can tell how far it reaches; "
+                                           "displace less often, or by less",
+                                           tree_.path(noted_.boundless)));
     nameTheWhole();
     mergeMaterials();
     layTextures(d_, model_);
@@ -297,8 +297,8 @@ Status Lowering::run(Progress* progress) {
     if (nothing && !d_.objects.empty()) return Done{};  // objects of their own are all there is
     if (!nothing && model_.field.bounds.finite()) return Done{};
     if (nothing) return derive::nothingSolid(d_);
-    return Error{Error::Kind::Input, syntax::placeText(tree_.shapes[0].span) +
-                                         fmt::format("'{}' has no end: a half-space may only cut", tree_.path(0))};
+    return syntax::errorAt(tree_.shapes[0].span, Error::Kind::Input,
+                           fmt::format("'{}' has no end: a half-space may only cut", tree_.path(0)));
 }
 
 /// Surface that no operand owns (a field of a single part) is the root's, with the first part's look.

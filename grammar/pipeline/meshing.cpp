@@ -84,15 +84,13 @@ Error noSurface(const Model& model, float cell_m) {
         isCut = isCut || shape.op == rules::Operator::Difference || shape.op == rules::Operator::Intersection;
         if (shape.solid != derive::none) thickest_m = std::max(thickest_m, minComponent(shape.scope.size));
     }
-    const std::string place = syntax::placeText(model.derivation.tree.shapes[0].span);
-    if (isCut || thickest_m > cell_m)
-        return {Error::Kind::Input,
-                fmt::format("{}there is no surface at cells of {:.3g} m: all is cut away, or thinner than a cell",
-                            place, cell_m)};
-    return {Error::Kind::Input,
-            fmt::format("{}there is no surface at cells of {:.3g} m, for no part is thicker than {:.3g} m: cells of "
-                        "half of that hold such parts",
-                        place, cell_m, thickest_m)};
+    const auto said = [&](std::string why) {
+        return syntax::errorAt(model.derivation.tree.shapes[0].span, Error::Kind::Input,
+                               fmt::format("there is no surface at cells of {:.3g} m{}", cell_m, why));
+    };
+    if (isCut || thickest_m > cell_m) return said(": all is cut away, or thinner than a cell");
+    return said(
+        fmt::format(", for no part is thicker than {:.3g} m: cells of half of that hold such parts", thickest_m));
 }
 
 Result<volume::Volume> levelSet(const Model& model, const MeshedModel& meshed, Context& context) {

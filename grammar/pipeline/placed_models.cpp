@@ -36,11 +36,9 @@ Status PlacedModels::derive() {
     if (context_.progress) context_.progress->begin("objects", 0);
     while (!open.empty()) {
         if (objects_[open.front()].depth > deepest)
-            return Error{
-                Error::Kind::Input,
-                fmt::format("{}objects hold objects more than {} deep: '{}' may hold itself",
-                            syntax::placeText(model_.grammar->starts[objects_[open.front()].inputs.start].span),
-                            deepest, nameOf(objects_[open.front()]))};
+            return syntax::errorAt(model_.grammar->starts[objects_[open.front()].inputs.start].span, Error::Kind::Input,
+                                   fmt::format("objects hold objects more than {} deep: '{}' may hold itself", deepest,
+                                               nameOf(objects_[open.front()])));
         if (const Status s = deriveLevel(open); !s.ok()) return s;
         std::vector<uint32_t> next;
         for (const uint32_t index : open) {
@@ -215,9 +213,8 @@ Status PlacedModels::addPlaces(const Derivation& derivation, const std::vector<u
         part.pose = {frame.origin + frame.axes * local.origin, frame.axes * local.axes};
         places.push_back({index, part});
         if (places.size() > most)
-            return Error{Error::Kind::Budget,
-                         fmt::format("{}there are more than {} places of objects (--max-shapes)",
-                                     syntax::placeText(derivation.tree.shapes[placement.shape].span), most)};
+            return syntax::errorAt(derivation.tree.shapes[placement.shape].span, Error::Kind::Budget,
+                                   fmt::format("there are more than {} places of objects (--max-shapes)", most));
         if (cancelled(context_.progress)) return cancelledError();
         if (object.holds.empty()) continue;
         const Status inner = addPlaces(*object.derivation, object.holds, part.pose, part.path, most, places);

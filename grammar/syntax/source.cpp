@@ -90,6 +90,10 @@ std::string placeText(SourceSpan span) {
            ": ";
 }
 
+Error errorAt(SourceSpan span, Error::Kind kind, const std::string& message) {
+    return {kind, placeText(span) + message, span.end - span.begin};
+}
+
 SourceSpan join(SourceSpan a, SourceSpan b) {
     if (!a.source) return b;
     if (!b.source) return a;

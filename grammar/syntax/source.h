@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "modeler/core/result.h"
+
 namespace sgm::syntax {
 
 /// One file's text with its line starts.
@@ -38,6 +40,8 @@ struct SourceSpan {
 };
 /// "file:line:column: ", or nothing for a span that points nowhere.
 std::string placeText(SourceSpan span);
+/// An error about the text of `span`, whose message begins with its place.
+Error errorAt(SourceSpan span, Error::Kind kind, const std::string& message);
 /// The smallest span that holds both (same source).
 SourceSpan join(SourceSpan a, SourceSpan b);
 

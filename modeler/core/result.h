@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cassert>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <variant>
@@ -21,6 +22,7 @@ struct Error {
     };
     Kind kind = Kind::Input;
     std::string message;  ///< a sentence in plain words, located where a place is known
+    uint32_t extent = 0;  ///< bytes of the text that it is about, from that place on; 0 where that isn't known
 };
 
 /// A T or the Error that stands in its place.

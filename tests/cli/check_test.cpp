@@ -152,6 +152,13 @@ TEST_F(Check, JsonHoldsWhatWasDerived) {
     EXPECT_EQ(list[0]["severity"], "error");
 }
 
+TEST_F(Check, WhatFailsWhereItIsDerivedIsMarkedWhole) {
+    const Outcome run = checked("start A -> cube : B\nrule B -> cube with k = 2 : C\nrule C -> + cube size (2 - k)\n");
+    EXPECT_EQ(run.code, 1);
+    EXPECT_NE(run.out.find("\n  rule C -> + cube size (2 - k)\n                   ^~~~~~~~~~~~\n"), std::string::npos)
+        << run.out;
+}
+
 TEST_F(Check, ATextThatIsNoUtf8IsTold) {
     expectWarned("param n = 2 in 0..4 \"Zahl der T\xfcren\"\nstart A -> cube size (n + 1)\n", "2:21",
                  "this text is no UTF-8");
