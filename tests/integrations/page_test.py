@@ -148,8 +148,9 @@ def test_textures(tab, folder):
             if (!places.has(key)) places.set(key, []);
             if (uvs[2 * v] !== 0) places.get(key).push(uvs[2 * v]);
         }
-        const corner = [...places].find(([key, us]) => { const [x, y, z] = key.split(",").map(Number); return Math.abs(x - 10.2) < .05 && Math.abs(z - 6.5) < .05 && us.length > 1; });
-        return corner !== undefined && Math.max(...corner[1]) - Math.min(...corner[1]) < 0.02;
+        const isCorner = (key) => { const [x, y, z] = key.split(",").map(Number); return Math.abs(x - 10.2) < .05 && Math.abs(z - 6.5) < .05; };
+        const runsOn = (us) => us.filter((u) => Math.abs(u - 33.4) < .02).length > 1;  // side and front are 13 and 20.4 m wide
+        return [...places].some(([key, us]) => isCorner(key) && runsOn(us));
     })()"""), "u at the front's right corner"
 
 
