@@ -28,17 +28,23 @@ double angleOf(Vec3d direction) {
 
 std::vector<Facing> facingsOf(const ShapeTree& tree) {
     std::vector<Facing> facings;
+    const auto add = [&](double angle, double area_m2) {
+        if (!facings.empty() && facings.back().angle == angle)
+            facings.back().area_m2 += area_m2;
+        else
+            facings.push_back({angle, area_m2});
+    };
     for (ShapeId id = 0; id < tree.shapes.size(); ++id) {
         if (tree.shapes.record(id).solid == none) continue;
         const Scope scope = tree.shapes.scopeOf(id);
         if (std::abs(scope.axes.y.y) < upright) continue;
         if (scope.footprint == none) {
-            facings.push_back({angleOf(scope.axes.x), 2 * (scope.size.x + scope.size.z) * scope.size.y});
+            add(angleOf(scope.axes.x), 2 * (scope.size.x + scope.size.z) * scope.size.y);
             continue;
         }
         for (const plan::PlacedEdge& edge : plan::edgesOf(footprintOf(scope, tree.footprints))) {
             const plan::Vec2 out = edge.normal();
-            facings.push_back({angleOf(scope.axes * Vec3d{out.x, 0, out.z}), edge.length() * scope.size.y});
+            add(angleOf(scope.axes * Vec3d{out.x, 0, out.z}), edge.length() * scope.size.y);
         }
     }
     return facings;
