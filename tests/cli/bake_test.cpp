@@ -105,8 +105,8 @@ TEST_F(BakeProgram, SaysWhatIsWrong) {
 std::string processText(const std::filesystem::path& path) {
     std::string text(4096, '\0');
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    const ssize_t count = file < 0 ? 0 : read(file, text.data(), text.size());
-    if (file >= 0) close(file);
+    const ssize_t count = file < 0 ? 0 : ::read(file, text.data(), text.size());
+    if (file >= 0) ::close(file);
     text.resize(static_cast<size_t>(std::max<ssize_t>(count, 0)));
     return text;
 }
