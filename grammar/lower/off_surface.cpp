@@ -14,8 +14,11 @@
 namespace sgm::lower {
 namespace {
 
-constexpr float offCells = 0.03f;  ///< from the surface: so far off a triangle's middle is wrong
-constexpr float boxCells = 8;      ///< of the cubes whose triangles are looked at together
+/// So many cells off the surface a triangle's middle is wrong: of flat parts, of those whose edges end thinner than any
+/// cell, as eaves and mouldings, and of round ones, beside what a chord is off that.
+constexpr float offFlat = 0.03f, offEaves = 0.12f, offRound = 0.06f;
+constexpr float chordSlack = 2;  ///< times what a chord is off by the normals at its ends
+constexpr float boxCells = 8;    ///< of the cubes whose triangles are looked at together
 
 /// Triangles whose middles lie in a cube.
 struct Patch {
@@ -23,7 +26,8 @@ struct Patch {
     Box3f box;
     std::vector<Vec3f> middles;
     std::vector<OriginId> parts;
-    std::vector<float> off_m;  ///< by the field
+    std::vector<float> most_m;  ///< that they may be off
+    std::vector<float> off_m;   ///< by the field
 
     Vec3d centre() const { return ((box.lo + box.hi) * 0.5f).as<double>(); }
     uint64_t number() const {
@@ -67,6 +71,24 @@ std::vector<Vec3f> placesOf(const mesh::Mesh& mesh) {
     return places;
 }
 
+/// The normals at a triangle's corners, of its own piece.
+std::array<Vec3f, 3> normalsOf(const std::vector<Vec3f>& ofVertices, const mesh::Triangle& corners,
+                               std::span<const mesh::CornerNormal> own) {
+    std::array<Vec3f, 3> normals{ofVertices[corners.x], ofVertices[corners.y], ofVertices[corners.z]};
+    for (const mesh::CornerNormal& n : own) normals[n.corner % 3] = n.normal;
+    return normals;
+}
+
+/// How far an edge of a triangle is off a round surface with these normals at its ends: the sagitta.
+float sagittaOf(const std::array<Vec3f, 3>& corners, const std::array<Vec3f, 3>& normals) {
+    float most = 0;
+    for (size_t k = 0; k < 3; ++k) {
+        const size_t next = (k + 1) % 3;
+        most = std::max(most, length(corners[next] - corners[k]) * length(normals[next] - normals[k]) / 8);
+    }
+    return most;
+}
+
 /// By vertex: whether it lies between two pieces.
 std::vector<bool> bordersOf(const mesh::Mesh& mesh) {
     constexpr uint64_t unseen = ~uint64_t{0};
@@ -91,20 +113,27 @@ float extentAlong(Vec3f normal, const std::array<Vec3f, 3>& corners) {
     return std::max({a, b, c}) - std::min({a, b, c});
 }
 
-/// Of flat parts. A triangle in the plane of its face is right also where a round border cuts a corner of it off.
-std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::vector<bool>& areFlat) {
+/// Of parts by how many cells they may be off, 0 for those that aren't asked. A triangle in the plane of its face is
+/// right also where a round border cuts a corner of it off.
+std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::vector<float>& mostOff) {
     const std::vector<Vec3f> places = placesOf(mesh);
+    std::vector<Vec3f> ofVertices;
+    ofVertices.reserve(places.size());
+    for (const mesh::Chunk& c : mesh.chunks) ofVertices.insert(ofVertices.end(), c.normals.begin(), c.normals.end());
     const std::vector<bool> areBorders = bordersOf(mesh);
     std::map<uint64_t, size_t> numbers;
     std::vector<Patch> patches;
     const float perMetre = 1 / (boxCells * cell_m);
     for (const mesh::Chunk& c : mesh.chunks)
-        mesh::visitTriangles(c, [&](uint32_t t, std::span<const mesh::CornerNormal> normals) {
-            if (!areFlat[c.origins[t]]) return;
+        mesh::visitTriangles(c, [&](uint32_t t, std::span<const mesh::CornerNormal> own) {
+            const float most = mostOff[c.origins[t]];
+            if (most == 0) return;
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
             if (areBorders[corners.x] + areBorders[corners.y] + areBorders[corners.z] < 2) return;
             const std::array<Vec3f, 3> triangle{places[corners.x], places[corners.y], places[corners.z]};
-            if (!normals.empty() && extentAlong(normals[0].normal, triangle) <= offCells * cell_m) return;
+            const float sagitta_m = most == offRound ? sagittaOf(triangle, normalsOf(ofVertices, corners, own)) : 0;
+            const float most_m = most * cell_m + chordSlack * sagitta_m;
+            if (!own.empty() && extentAlong(own[0].normal, triangle) <= most * cell_m) return;
             const Vec3f middle = (triangle[0] + triangle[1] + triangle[2]) * (1.0f / 3);
             Patch at;
             for (int axis = 0; axis < 3; ++axis) at.index[axis] = static_cast<int>(std::floor(middle[axis] * perMetre));
@@ -112,7 +141,7 @@ std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::ve
             if (isNew) patches.push_back(at);
             Patch& patch = patches[known->second];
             patch.box = hull(patch.box, middle);
-            patch.middles.push_back(middle), patch.parts.push_back(c.origins[t]);
+            patch.middles.push_back(middle), patch.parts.push_back(c.origins[t]), patch.most_m.push_back(most_m);
         });
     return patches;
 }
@@ -146,11 +175,12 @@ std::vector<bool> bentShapes(const derive::ShapeTree& tree) {
     return areBent;
 }
 
-/// By part: whether it has flat faces, and is among others, where those aren't null. Not mouldings and eaves, whose
-/// facets and wedges are finer than any cells: findTornEaves looks at these.
-std::vector<bool> flatParts(const derive::Derivation& derivation, const Model& model,
-                            const std::vector<ThinPart>* among) {
-    std::vector<bool> areWanted(model.shapeOf.size(), !among), areFlat(model.shapeOf.size());
+/// By part: how many cells its triangles may be off the surface; 0 where it bends, or isn't among others, where those
+/// aren't null.
+std::vector<float> mostOffOf(const derive::Derivation& derivation, const Model& model,
+                             const std::vector<ThinPart>* among) {
+    std::vector<bool> areWanted(model.shapeOf.size(), !among);
+    std::vector<float> mostOff(model.shapeOf.size());
     if (among)
         for (const ThinPart& part : *among) areWanted[part.part] = true;
     const std::vector<bool> areBent = bentShapes(derivation.tree);
@@ -158,10 +188,11 @@ std::vector<bool> flatParts(const derive::Derivation& derivation, const Model& m
         const derive::ShapeId shape = model.shapeOf[part];
         if (shape == derive::none || !areWanted[part] || areBent[shape]) continue;
         const derive::SolidValue* const solid = derivation.tree.solidOf(shape);
-        const bool standsOut = solid && derive::standsOut_m(*solid, derivation.tree.shapes[shape].scope.size.y) > 0;
-        areFlat[part] = solid && solid->primitive && solid->primitive->hasFlatFaces && !standsOut;
+        if (!solid || !solid->primitive) continue;
+        const bool standsOut = derive::standsOut_m(*solid, derivation.tree.shapes[shape].scope.size.y) > 0;
+        mostOff[part] = standsOut ? offEaves : solid->primitive->hasFlatFaces ? offFlat : offRound;
     }
-    return areFlat;
+    return mostOff;
 }
 
 }  // namespace
@@ -174,7 +205,7 @@ Result<std::vector<ThinPart>> findOffSurface(const derive::Derivation& derivatio
         return c.labels.size() != c.triangles.size() || c.origins.size() != c.triangles.size();
     });
     if (hasNoPieces) return found;
-    std::vector<Patch> patches = patchesOf(mesh, cell_m, flatParts(derivation, model, among));
+    std::vector<Patch> patches = patchesOf(mesh, cell_m, mostOffOf(derivation, model, among));
     eval::orderByPlace(std::span(patches));
     eval::probeInGroups(
         std::span(patches), threads, progress, "creases", [&] { return OffProber(tape, cell_m); },
@@ -185,7 +216,7 @@ Result<std::vector<ThinPart>> findOffSurface(const derive::Derivation& derivatio
     std::map<OriginId, ThinPart> parts;
     for (const Patch& patch : patches)
         for (size_t k = 0; k < patch.off_m.size(); ++k) {  // none in an empty box
-            if (std::abs(patch.off_m[k]) <= offCells * cell_m) continue;
+            if (std::abs(patch.off_m[k]) <= patch.most_m[k]) continue;
             ThinPart& part = parts[patch.parts[k]];
             const auto edge_m = static_cast<double>(cell_m);
             part.places.push_back({patch.middles[k].as<double>(), {}, {edge_m, edge_m, edge_m}});

@@ -115,6 +115,32 @@ TEST(Ledges, OfTiersHaveNoChips) {
     EXPECT_EQ(partsOff(3), 0u);
 }
 
+/// The rim of the highest step had bites as long as a cell, and spikes: .12 m³ of it were missing.
+TEST(Ledges, OfRoundStepsHaveNoBites) {
+    for (const int resolution : {136, 156}) {
+        const mesh::Mesh mesh = usualMesh(
+            "start A -> size 1m Ground, Steps move (13m, .2m, 8m)\n"
+            "rule Ground -> cube size (66m, .4m, 58m) move (0, -.5m, 0)\n"
+            "rule Steps -> for k in 0..2 { nil,\n"
+            "  cylinder size (6.8m - k * .9m, .22m, 6.8m - k * .9m) move (0, k * .22m - .4m, 0) }\n",
+            resolution);
+        const double exact_m3 = 66 * 58 * .4 + pi / 4 * (.21 * 6.8 * 6.8 + .22 * (5.9 * 5.9 + 5 * 5));
+        EXPECT_NEAR(mesh::measure(mesh).volume_m3, exact_m3, .03) << resolution;
+    }
+}
+
+/// The board along the eaves was bevelled away in places, and its corner torn.
+TEST(Ledges, OfBoardsAlongEavesAreExact) {
+    for (const int resolution : {160, 256})
+        EXPECT_LE(usualMesh("start A -> cube size (40, 1, 30), House move (6m, 1m, 2m) turn 23deg\n"
+                            "rule House -> footprint rect(9, 6) extrude 3m Mass\n"
+                            "rule Mass -> cube + gableRoof(40deg, overhang: .4m, fascia: .12m) at +y\n",
+                            resolution)
+                      .triangleCount(),
+                  90u)
+            << resolution;
+}
+
 /// A corner of the foot may lie beyond an edge of the slab between two cells: 8 triangles of the slab's top, 10 around
 /// it and below, 10 of the tower.
 TEST(Feet, OfTurnedTowersAreExact) {
