@@ -23,7 +23,7 @@ namespace {
 constexpr int steps = 16;                  ///< between the samples on a line
 constexpr int halvings = 6;                ///< of a step around a crossing
 constexpr size_t fewestCrossings = 3;      ///< of a part that isn't buried
-constexpr double leastMissing = 0.1;       ///< share of the surface that a part in the list lacks
+constexpr double leastMissing = 0.04;      ///< share of the surface that a part in the list lacks
 constexpr double leastOfBounded = 0.02;    ///< the same where halving ended at the bound of triangles
 constexpr double mostlyFree = 0.9;         ///< of the lines through a plate meet both its faces
 constexpr double leastMissingArea = 0.01;  ///< share of the area of a plate that stands free

@@ -39,7 +39,7 @@ struct ThinPart {
 /// where does the field's surface belong to the part, and has the mesh a triangle of the part there? Of a plate
 /// that stands free, and of a thin box's faces that are mostly free, does the mesh cover them? Likewise
 /// at thin walls and narrow gaps at the faces of boxes
-/// (`findThinSections`): those that lack more than a tenth; and at the walls of shells and beside other cuts
+/// (`findThinSections`): those that lack more than a twenty-fifth; and at the walls of shells and beside other cuts
 /// (`findMissingWalls`); a part that lacks of both is there once, with its walls. Ascending by part. What else is thin
 /// within a thicker scope, as a needle's point or a fractal's ornament, isn't looked for. Empty for a mesh without
 /// origins. Only those `among` others are looked at, where that isn't null. About 4,000 evaluations of a shortened tape
@@ -51,8 +51,8 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
 
 /// Of round parts, neither boxes nor over a plan, whose scope is somewhere thinner than two cells, and of bars and
 /// turned plates, as walls with openings, thinner than one: those whose surface the mesh has, but over a twelfth of
-/// their thickness away in more than a tenth of the places where findMissingParts looks, or a fiftieth of those `among`
-/// others that are bounded; and those that it lacks. Else as that.
+/// their thickness away in more than a twenty-fifth of the places where findMissingParts looks, or a fiftieth of those
+/// `among` others that are bounded; and those that it lacks. Else as that.
 Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation, const Model& model,
                                             const eval::Tape& tape, const mesh::Mesh& mesh, float cell_m, int threads,
                                             Progress* progress, const std::vector<ThinPart>* among = nullptr);

@@ -1,6 +1,8 @@
-// Damaged grammars: no crash, every span inside the file, no parse longer than 50 ms; what still parses keeps its
-// meaning when it is formatted.
+// Damaged grammars: no crash, every span inside the file, no parse longer than a fifth of a second; what still
+// parses keeps its meaning when it is formatted.
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "grammar/operations/operations.h"
 #include "grammar/syntax/parser.h"
@@ -62,14 +64,22 @@ TEST(Fuzz, ArbitraryBytesAreRefusedInPlace) {
     }
 }
 
+/// Processor seconds that reading takes.
+double secondsToRead(const std::string& text) {
+    const SourcePtr source = makeSource(text);
+    Diagnostics diagnostics;
+    const double begin = secondsOf(threadClock());
+    parse(source, operations::table(), diagnostics);
+    return secondsOf(threadClock()) - begin;
+}
+
 TEST(Fuzz, LongInputTakesLinearTime) {
-    size_t parsed = 0;
-    constexpr size_t bytes = 240'000;  // quadratic work on these takes a second
+    constexpr size_t bytes = 240'000;  // quadratic work on these takes more than a second
     for (const char* unit :
          {"param a = 1\n", "rule A -> cube + +\n", "(", "\xff ", "{ ", "\"\n", "rule A -> a[", "+ a "}) {
         std::string text = "grammar 1\nrule A -> ";
         while (text.size() < bytes) text += unit;
-        EXPECT_EQ(judge(text, parsed), "") << unit;
+        EXPECT_LT(std::min(secondsToRead(text), secondsToRead(text)), boundSeconds(.75)) << unit;
     }
 }
 
