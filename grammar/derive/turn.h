@@ -6,10 +6,10 @@
 
 namespace sgm::derive {
 
-/// The rotation about the y axis, right-handed, from the axes of the model to those of its walls: of the four
-/// directions of a wall that is nearest to the axes, radians in [−π/4, π/4]. Walls are the upright sides of boxes and
-/// edges of footprints that hold solids. 0 where no more than half of their area agrees within a microradian.
-/// O(s log s) in sides and edges.
+/// The rotation about the y axis, right-handed, from the axes of the model to those of its walls, by the least of
+/// four angles that will do, radians in [−π/4, π/4]. Walls are the upright sides of boxes and edges of footprints
+/// that hold solids. 0 where no more than half of their area agrees within a microradian. O(s log s) in sides and
+/// edges.
 double facingOf(const Derivation& derivation);
 
 /// The derivation with all its shapes turned about the y axis through the origin, right-handed, by `angle` radians.

@@ -11,6 +11,7 @@
 #include "grammar/derive/lift.h"
 #include "grammar/lower/lowering.h"
 #include "grammar/lower/solids.h"
+#include "modeler/core/distinct_names.h"
 #include "modeler/core/pages.h"
 #include "modeler/core/parallel.h"
 #include "modeler/core/random.h"
@@ -342,16 +343,13 @@ void Lowering::mergeMaterials() {
     merged.clear();
     std::vector<uint32_t> numbers(d_.materials.size(), 0);
     std::map<Look, uint32_t> looks;
-    std::set<std::string> taken;
-    std::map<std::string, uint32_t> nextNumber;  // by name
+    DistinctNames names;
     for (const size_t i : order) {
         const auto [at, fresh] = looks.try_emplace(lookOf(i), static_cast<uint32_t>(merged.size()));
         numbers[i] = at->second;
         if (!fresh) continue;
         merged.push_back(d_.materials[i]);
-        std::string& name = merged.back().name;
-        uint32_t& next = nextNumber.try_emplace(name, 2).first->second;
-        while (!taken.insert(name).second) name = fmt::format("{}_{}", d_.materials[i].name, next++);
+        merged.back().name = names.take(d_.materials[i].name);
     }
     for (Part& part : model_.provenance.parts) part.material = numbers[part.material];
 }

@@ -113,9 +113,15 @@ float extentAlong(Vec3f normal, const std::array<Vec3f, 3>& corners) {
     return std::max({a, b, c}) - std::min({a, b, c});
 }
 
-/// Of parts by how many cells they may be off, 0 for those that aren't asked. A triangle in the plane of its face is
+/// How far triangles of a part may be off the surface.
+struct MostOff {
+    float cells = 0;  ///< 0: nobody asks
+    bool isRound = false;
+};
+
+/// Of parts by how far they may be off. A triangle in the plane of its face is
 /// right also where a round border cuts a corner of it off.
-std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::vector<float>& mostOff) {
+std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::vector<MostOff>& mostOff) {
     const std::vector<Vec3f> places = placesOf(mesh);
     std::vector<Vec3f> ofVertices;
     ofVertices.reserve(places.size());
@@ -126,14 +132,14 @@ std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::ve
     const float perMetre = 1 / (boxCells * cell_m);
     for (const mesh::Chunk& c : mesh.chunks)
         mesh::visitTriangles(c, [&](uint32_t t, std::span<const mesh::CornerNormal> own) {
-            const float most = mostOff[c.origins[t]];
-            if (most == 0) return;
+            const MostOff most = mostOff[c.origins[t]];
+            if (most.cells == 0) return;
             const mesh::Triangle corners = c.inMesh(c.triangles[t]);
             if (areBorders[corners.x] + areBorders[corners.y] + areBorders[corners.z] < 2) return;
             const std::array<Vec3f, 3> triangle{places[corners.x], places[corners.y], places[corners.z]};
-            const float sagitta_m = most == offRound ? sagittaOf(triangle, normalsOf(ofVertices, corners, own)) : 0;
-            const float most_m = most * cell_m + chordSlack * sagitta_m;
-            if (!own.empty() && extentAlong(own[0].normal, triangle) <= most * cell_m) return;
+            const float sagitta_m = most.isRound ? sagittaOf(triangle, normalsOf(ofVertices, corners, own)) : 0;
+            const float most_m = most.cells * cell_m + chordSlack * sagitta_m;
+            if (!own.empty() && extentAlong(own[0].normal, triangle) <= most.cells * cell_m) return;
             const Vec3f middle = (triangle[0] + triangle[1] + triangle[2]) * (1.0f / 3);
             Patch at;
             for (int axis = 0; axis < 3; ++axis) at.index[axis] = static_cast<int>(std::floor(middle[axis] * perMetre));
@@ -175,12 +181,11 @@ std::vector<bool> bentShapes(const derive::ShapeTree& tree) {
     return areBent;
 }
 
-/// By part: how many cells its triangles may be off the surface; 0 where it bends, or isn't among others, where those
-/// aren't null.
-std::vector<float> mostOffOf(const derive::Derivation& derivation, const Model& model,
-                             const std::vector<ThinPart>* among) {
+/// By part; nobody asks where it bends, or isn't among others, where those aren't null.
+std::vector<MostOff> mostOffOf(const derive::Derivation& derivation, const Model& model,
+                               const std::vector<ThinPart>* among) {
     std::vector<bool> areWanted(model.shapeOf.size(), !among);
-    std::vector<float> mostOff(model.shapeOf.size());
+    std::vector<MostOff> mostOff(model.shapeOf.size());
     if (among)
         for (const ThinPart& part : *among) areWanted[part.part] = true;
     const std::vector<bool> areBent = bentShapes(derivation.tree);
@@ -190,7 +195,8 @@ std::vector<float> mostOffOf(const derive::Derivation& derivation, const Model& 
         const derive::SolidValue* const solid = derivation.tree.solidOf(shape);
         if (!solid || !solid->primitive) continue;
         const bool standsOut = derive::standsOut_m(*solid, derivation.tree.shapes[shape].scope.size.y) > 0;
-        mostOff[part] = standsOut ? offEaves : solid->primitive->hasFlatFaces ? offFlat : offRound;
+        const bool isRound = !standsOut && !solid->primitive->hasFlatFaces;
+        mostOff[part] = {standsOut ? offEaves : isRound ? offRound : offFlat, isRound};
     }
     return mostOff;
 }

@@ -39,7 +39,8 @@ struct ThinPart {
 /// where does the field's surface belong to the part, and has the mesh a triangle of the part there? Of a plate
 /// that stands free, and of a thin box's faces that are mostly free, does the mesh cover them? Likewise
 /// at thin walls and narrow gaps at the faces of boxes
-/// (`findThinSections`): those that lack more than a twenty-fifth; and at the walls of shells and beside other cuts
+/// (`findThinSections`): those that lack more than a twenty-fifth, or of sections a tenth; and at the walls of shells
+/// and beside other cuts
 /// (`findMissingWalls`); a part that lacks of both is there once, with its walls. Ascending by part. What else is thin
 /// within a thicker scope, as a needle's point or a fractal's ornament, isn't looked for. Empty for a mesh without
 /// origins. Only those `among` others are looked at, where that isn't null. About 4,000 evaluations of a shortened tape

@@ -15,7 +15,7 @@ namespace {
 /// The angle by which the model's walls stand across the grid; 0 where they lie along it or can't be turned.
 double turnOf(const Model& model, const mesh::PolygonizeOptions& options) {
     const derive::Derivation& d = model.derivation;
-    const bool isFixed = model.isCutOpen || !d.objects.empty() || !d.reliefs.empty();
+    const bool isFixed = model.keepsAxes || !d.objects.empty() || !d.reliefs.empty();
     return options.surface != mesh::Surface::Crisp || isFixed ? 0 : derive::facingOf(d);
 }
 

@@ -49,7 +49,7 @@ struct Model {
     derive::Derivation derivation;
     std::shared_ptr<const lower::Model> lowered;
     eval::Tape tape;
-    bool isCutOpen = false;  ///< a section has taken away a part of what was derived
+    bool keepsAxes = false;  ///< it is meshed along its own axes whatever its walls face, as what a section cuts open
 };
 /// Stages "derive", "objects" where there are some to graft, "lower", "compile". Errors as of those stages.
 Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const derive::Options& options, Context& context,

@@ -68,7 +68,7 @@ Result<Model> makeModel(derive::Derivation derivation, const Section& section, C
                         "xyz"[section.axis], offset_m, whole.lo[section.axis], whole.hi[section.axis])};
     eval::Tape tape =
         context.timed("compile", [&] { return eval::compile(model.graph, model.field, model.graph.constants()); });
-    return Model{std::move(derivation), std::move(*lowered), std::move(tape), true};
+    return Model{std::move(derivation), std::move(*lowered), std::move(tape), /*keepsAxes=*/true};
 }
 
 }  // namespace sgm::pipeline

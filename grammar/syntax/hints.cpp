@@ -31,7 +31,7 @@ constexpr Lookalike lookalikes[] = {
     {"?", "write 'if(condition, a, b)'"},
 };
 
-constexpr std::string_view ifMend = "bodies choose by 'when condition { … }', values by 'if(condition, a, b)'";
+constexpr std::string_view ifHint = "bodies choose by 'when condition { … }', values by 'if(condition, a, b)'";
 
 /// A token as other languages have it, where the reader refuses it, and what is written instead.
 struct ForeignForm {
@@ -233,7 +233,7 @@ std::optional<Hint> ofOtherGrammars(const Cursor& cursor, std::string_view messa
         return Hint{cursor.span(token), "there is no 'comp'", foreignAttributeHint("comp")};
     if (cursor.text(last) == "case" && message.ends_with("can't follow a shape"))
         return Hint{cursor.span(last), "there is no 'case'",
-                    "a rule's condition stands before '->': 'rule B when … -> …'; " + std::string(ifMend)};
+                    "a rule's condition stands before '->': 'rule B when … -> …'; " + std::string(ifHint)};
     if (auto call = foreignCall(cursor, message)) return call;
     if (cursor.at("weight") && message.starts_with("unexpected") && cursor.at(Token::Kind::Number, 1))
         return Hint{cursor.span(token), "unexpected 'weight'",
@@ -296,10 +296,10 @@ std::optional<Hint> findHint(const Cursor& cursor, std::string_view message) {
         return Hint{cursor.span(token), "a comment doesn't begin with '#'",
                     "a comment begins with '//' and ends with its line"};
     if (text == "if" && !(cursor.at("(", 1) && cursor.peek(1).glued))
-        return Hint{cursor.span(token), "there is no 'if' here", std::string(ifMend)};
-    if (before == "if") return Hint{cursor.span(cursor.previous(1)), "there is no 'if' here", std::string(ifMend)};
+        return Hint{cursor.span(token), "there is no 'if' here", std::string(ifHint)};
+    if (before == "if") return Hint{cursor.span(cursor.previous(1)), "there is no 'if' here", std::string(ifHint)};
     if (text == "{" && before == ")" && calledBefore(cursor) == "if")
-        return Hint{cursor.span(token), "there is no 'if' here", std::string(ifMend)};
+        return Hint{cursor.span(token), "there is no 'if' here", std::string(ifHint)};
     if (before == "roof" && std::find(std::begin(roofForms), std::end(roofForms), text) != std::end(roofForms))
         return Hint{cursor.span(token), "'roof' has no form " + quoted(text),
                     "write " + quoted(std::string(text) + "Roof")};

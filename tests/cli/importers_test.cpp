@@ -146,6 +146,7 @@ TEST_F(Importers, GodotTakesColliders) {
     const std::string wall = grammar(
         "terminal stone = cube\nstart A -> stone size (4, 3, .4) - cube size 1 at centre to centre move (.5, 0, 0) + "
         "pyramid size (4, 1, .4) at +y\n");
+    // Of the wall four boxes around its opening, of the pyramid six side by side, for it is no box.
     std::map<std::string, int> written{{"boxes.glb", 10}, {"convex.glb", 5}, {"mesh.glb", 1}};
     for (const std::string kind : {"boxes", "convex", "mesh"}) {
         const Outcome run = sgm("build " + wall + " --resolution 64 --collider " + kind + " -o " + path(kind + ".glb"));

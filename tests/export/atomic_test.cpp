@@ -95,22 +95,26 @@ TEST_P(Atomic, AWriteThatIsCancelledOnItsWayStopsSoon) {
         chunk.triangles.push_back(chunk.triangles[i - once]);
         chunk.origins.push_back(0);
     }
-    Progress progress;
-    input.progress = &progress;
-    const clockid_t writer = threadClock();
-    double asked = 0;
-    std::thread watcher([&] {
-        while (*progress.stage() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        asked = secondsOf(writer);
-        progress.cancel();
-    });
-    const Status written = write(input, target);
-    const double ended = secondsOf(writer);
-    watcher.join();
-    const double late = ended - asked;
-    ASSERT_FALSE(written.ok());
-    EXPECT_EQ(written.error().kind, Error::Kind::Cancelled);
-    EXPECT_LT(late, boundSeconds(.2)) << "the whole takes more than a second";
+    const double most_s = boundSeconds(.05);
+    double late_s = 2 * most_s;
+    for (int attempt = 0; late_s > most_s && attempt < 5; ++attempt) {  // other work may have lengthened it
+        Progress progress;
+        input.progress = &progress;
+        const clockid_t writer = threadClock();
+        double asked_s = 0;
+        std::thread watcher([&] {
+            while (*progress.stage() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            asked_s = secondsOf(writer);
+            progress.cancel();
+        });
+        const Status written = write(input, target);
+        const double ended_s = secondsOf(writer);
+        watcher.join();
+        late_s = ended_s - asked_s;
+        ASSERT_FALSE(written.ok());
+        EXPECT_EQ(written.error().kind, Error::Kind::Cancelled);
+    }
+    EXPECT_LT(late_s, most_s);
     EXPECT_EQ(contentOf(target), "the old file");
 }
 

@@ -47,7 +47,7 @@ inline Model modelOf(const std::string& text, Context& context) {
 /// The model as one whose mesh isn't made in the axes of its walls, but across the grid, as those of parts are that
 /// stand otherwise than most.
 inline Model acrossGrid(Model model) {
-    model.isCutOpen = true;
+    model.keepsAxes = true;
     return model;
 }
 

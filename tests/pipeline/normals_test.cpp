@@ -43,8 +43,8 @@ TEST(Normals, NoCornerLooksIntoTheSolidWherePartsStandOnOneAnother) {
 TEST(Normals, NoCornerOfAFileLooksThroughItsTriangle) {
     // Walls thinner than a cell, turned: vertices of either face are a cell apart at most.
     Context context{nullptr, 2};
-    CrispModel crisp =
-        crispModel("grammar 2\nstart A -> cube size (40, 9, .3) turn 15deg + cube size (30, 8, 30)\n", 100, context, 0);
+    Model model = modelOf("grammar 2\nstart A -> cube size (40, 9, .3) turn 15deg + cube size (30, 1, 30)\n", context);
+    CrispModel crisp = crispModel(acrossGrid(std::move(model)), 100, context, 0);
     const auto mesh = crisp.edit({}, context);
     ASSERT_TRUE(mesh.ok());
     const std::vector<mesh::Triangle> triangles = mesh::gatherTriangles(*mesh);

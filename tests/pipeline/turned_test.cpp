@@ -13,12 +13,12 @@
 namespace sgm::pipeline {
 namespace {
 
-std::string houseText(double turn_deg, const std::string& more = {}) {
+std::string houseText(double turn_deg) {
     return fmt::format(
         "grammar 2\nterminal wall color #c0a080\nterminal trim color #a04030\n"
-        "start S -> size (8m, 5m, 6m) turn {}deg move (3m, 0, 1m) House{}\n"
+        "start S -> size (8m, 5m, 6m) turn {}deg move (3m, 0, 1m) House\n"
         "rule House -> wall + trim size (102%, .3m, 102%) at +y - trim size (1m, 2m, 2m) move (1m, 0, 3m)\n",
-        turn_deg, more);
+        turn_deg);
 }
 
 double facing_deg(const std::string& text) {
@@ -80,25 +80,32 @@ TEST(Turned, PartsHaveTheSameNumbers) {
     }
 }
 
-TEST(Turned, LevelSetStandsAlongTheGrid) {
+/// On the grid of the model as it stands.
+MeshedModel meshedAs(const Model& model, mesh::Surface surface) {
     Context context{nullptr, 2};
-    const Model model = modelOf(houseText(25), context);
-    const mesh::Grid grid = gridOf(model, 32);
-    const auto made = makeMesh(model, grid, {.surface = mesh::Surface::Crisp}, context);
-    ASSERT_TRUE(made.ok());
-    EXPECT_TRUE(made->blocks.empty());
-    EXPECT_EQ(made->grid.cell_m, grid.cell_m);
-    if (!isBuiltWith(Package::OpenVdb)) return;
-    EXPECT_TRUE(levelSet(model, *made, context).ok());
+    auto made = makeMesh(model, gridOf(model, 32), {.surface = surface}, context);
+    EXPECT_TRUE(made.ok());
+    return std::move(*made);
 }
 
-TEST(Turned, OtherModelsStayAsTheyStand) {
-    Context context{nullptr, 2};
+TEST(Turned, MarchingCubesAndWhatKeepsItsAxesStandAlongTheGrid) {
+    Context context;
     const Model model = modelOf(houseText(25), context);
-    const mesh::Grid grid = gridOf(model, 32);
-    const auto cubes = makeMesh(model, grid, {.surface = mesh::Surface::Cubes}, context);
-    ASSERT_TRUE(cubes.ok());
-    EXPECT_FALSE(cubes->blocks.empty());  // the paper's marching cubes
+    EXPECT_TRUE(meshedAs(model, mesh::Surface::Crisp).blocks.empty());
+    EXPECT_FALSE(meshedAs(model, mesh::Surface::Cubes).blocks.empty());
+    EXPECT_FALSE(meshedAs(acrossGrid(model), mesh::Surface::Crisp).blocks.empty());
+}
+
+TEST(Turned, LevelSetStandsAlongTheGrid) {
+    if (!isBuiltWith(Package::OpenVdb)) GTEST_SKIP() << "built without OpenVDB";
+    Context context;
+    const Model model = modelOf(houseText(25), context);
+    const auto turned = levelSet(model, meshedAs(model, mesh::Surface::Crisp), context);
+    const auto straight = levelSet(model, meshedAs(model, mesh::Surface::Cubes), context);
+    ASSERT_TRUE(turned.ok() && straight.ok());
+    EXPECT_EQ(turned->bounds().lo, straight->bounds().lo);
+    EXPECT_EQ(turned->bounds().hi, straight->bounds().hi);
+    EXPECT_EQ(turned->activeVoxels(), straight->activeVoxels());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Damaged grammars: no crash, every span inside the file, no parse longer than a fifth of a second; what still
-// parses keeps its meaning when it is formatted.
+// Damaged grammars: no crash, every span inside the file, no parse longer than 50 ms; what still parses keeps its
+// meaning when it is formatted.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,6 +16,15 @@
 namespace sgm::syntax {
 namespace {
 
+/// Processor seconds that reading takes.
+double secondsToRead(const std::string& text) {
+    const SourcePtr source = makeSource(text);
+    Diagnostics diagnostics;
+    const double begin = secondsOf(threadClock());
+    parse(source, operations::table(), diagnostics);
+    return secondsOf(threadClock()) - begin;
+}
+
 /// What is wrong with how `text` was parsed and formatted, in words; empty when nothing is. Counts texts without
 /// problems.
 std::string judge(const std::string& text, size_t& parsed) {
@@ -23,8 +32,11 @@ std::string judge(const std::string& text, size_t& parsed) {
     Diagnostics diagnostics;
     const double begin = secondsOf(threadClock());
     const Ast ast = parse(source, operations::table(), diagnostics);
-    const double ms = 1e3 * (secondsOf(threadClock()) - begin);
-    if (ms > 1e3 * boundSeconds(.2)) return "parsing took " + std::to_string(ms) + " ms";
+    double seconds = secondsOf(threadClock()) - begin;
+    const double most = boundSeconds(.05);
+    for (int again = 0; seconds > most && again < 4; ++again)  // other work may have lengthened it
+        seconds = std::min(seconds, secondsToRead(text));
+    if (seconds > most) return "parsing took " + std::to_string(1e3 * seconds) + " ms";
     for (const Diagnostic& d : diagnostics.all()) {
         if (d.span.source != source.get() || d.span.begin > d.span.end || d.span.end > text.size())
             return "a problem outside the file: " + d.message;
@@ -64,22 +76,13 @@ TEST(Fuzz, ArbitraryBytesAreRefusedInPlace) {
     }
 }
 
-/// Processor seconds that reading takes.
-double secondsToRead(const std::string& text) {
-    const SourcePtr source = makeSource(text);
-    Diagnostics diagnostics;
-    const double begin = secondsOf(threadClock());
-    parse(source, operations::table(), diagnostics);
-    return secondsOf(threadClock()) - begin;
-}
-
 TEST(Fuzz, LongInputTakesLinearTime) {
-    constexpr size_t bytes = 240'000;  // quadratic work on these takes more than a second
+    size_t parsed = 0;
     for (const char* unit :
          {"param a = 1\n", "rule A -> cube + +\n", "(", "\xff ", "{ ", "\"\n", "rule A -> a[", "+ a "}) {
         std::string text = "grammar 1\nrule A -> ";
-        while (text.size() < bytes) text += unit;
-        EXPECT_LT(std::min(secondsToRead(text), secondsToRead(text)), boundSeconds(.75)) << unit;
+        while (text.size() < 60000) text += unit;
+        EXPECT_EQ(judge(text, parsed), "") << unit;
     }
 }
 
