@@ -69,6 +69,13 @@ Result<Scene> loadScene(const BuildRequest& request, Context& context) {
     return Scene{*grammar, std::move(*options), std::move(*animation)};
 }
 
+/// What doesn't move from frame to frame keeps its vertices.
+mesh::PolygonizeOptions frameMeshingOf(const BuildRequest& request) {
+    mesh::PolygonizeOptions options = meshingOf(request.grid, needsPositionsOnly(request));
+    options.halvesAll = false;
+    return options;
+}
+
 /// Meshes the model that `incremental` stands at and writes what the frame's request wants.
 Status writeFrame(const BuildRequest& framed, pipeline::IncrementalPipeline& incremental, const mesh::Grid& grid,
                   Context& context) {
@@ -77,9 +84,8 @@ Status writeFrame(const BuildRequest& framed, pipeline::IncrementalPipeline& inc
     if (needsNoMesh(framed)) return printFiles(framed), Done{};
     auto division = pipeline::divide(model, framed.out.objects);
     if (!division.ok()) return division.error();
-    auto meshed = wantsLevelSet(framed)
-                      ? makeMesh(model, grid, meshingOf(framed.grid, needsPositionsOnly(framed)), context)
-                      : incremental.meshed(grid, context);
+    auto meshed = wantsLevelSet(framed) ? makeMesh(model, grid, frameMeshingOf(framed), context)
+                                        : incremental.meshed(grid, context);
     if (!meshed.ok()) return meshed.error();
     return deliver(framed, model, std::move(*division), std::move(*meshed), {}, context);
 }
@@ -111,7 +117,7 @@ Status buildFrames(const BuildRequest& request) {
     const auto bounds = boundsOfFrames(scene->grammar, scene->options, scene->animation, watch.progress());
     if (!bounds.ok()) return bounds.error();
     mesh::Grid grid = gridOver(*bounds, request.grid);
-    pipeline::IncrementalPipeline incremental(meshingOf(request.grid, needsPositionsOnly(request)));
+    pipeline::IncrementalPipeline incremental(frameMeshingOf(request));
     mesh::SimplifiedPieces pieces;
     for (int frame = 0; frame < scene->animation.frames; ++frame) {
         Context context{watch.progress(), request.grid.threads};

@@ -17,8 +17,9 @@ namespace {
 /// So many cells off the surface a triangle's middle is wrong: of flat parts, of those whose edges end thinner than any
 /// cell, as eaves and mouldings, and of round ones, beside what a chord is off that.
 constexpr float offFlat = 0.03f, offEaves = 0.12f, offRound = 0.06f;
-constexpr float chordSlack = 2;  ///< times what a chord is off by the normals at its ends
-constexpr float boxCells = 8;    ///< of the cubes whose triangles are looked at together
+constexpr float chordSlack = 2;     ///< times what a chord is off by the normals at its ends
+constexpr float boxCells = 8;       ///< of the cubes whose triangles are looked at together
+constexpr double placeCells = 0.5;  ///< edge of a place: the triangle's own cell and those beside it
 
 /// Triangles whose middles lie in a cube.
 struct Patch {
@@ -224,7 +225,7 @@ Result<std::vector<ThinPart>> findOffSurface(const derive::Derivation& derivatio
         for (size_t k = 0; k < patch.off_m.size(); ++k) {  // none in an empty box
             if (std::abs(patch.off_m[k]) <= patch.most_m[k]) continue;
             ThinPart& part = parts[patch.parts[k]];
-            const auto edge_m = static_cast<double>(cell_m);
+            const double edge_m = placeCells * static_cast<double>(cell_m);
             part.places.push_back({patch.middles[k].as<double>(), {}, {edge_m, edge_m, edge_m}});
         }
     for (auto& [number, part] : parts) {

@@ -63,7 +63,7 @@ Result<MeshedModel> IncrementalPipeline::meshed(const mesh::Grid& grid, Context&
     context.stages.emplace_back("sample", made.counts.sampleSeconds);
     context.stages.emplace_back("polygonize", made.counts.polygonizeSeconds);
     if (meshing_.surface == mesh::Surface::Crisp && meshing_.halvings > 0) {
-        auto missing = holdThinParts(viewModel(), made.mesh, grid, meshing_, context);
+        auto missing = holdThinParts(viewModel(), made.mesh, grid, meshing_, context, made.counts);
         if (!missing.ok()) return missing.error();
         made.missing = std::move(*missing);
     }

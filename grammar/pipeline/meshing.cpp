@@ -39,7 +39,7 @@ Result<MeshedModel> meshAsItStands(const Model& model, const mesh::Grid& grid, c
     context.stages.emplace_back("sample", seconds * share);
     context.stages.emplace_back("polygonize", seconds * (1 - share));
     if (options.surface == mesh::Surface::Crisp && options.halvings > 0) {
-        auto missing = holdThinParts(model, made.mesh, made.grid, options, context);
+        auto missing = holdThinParts(model, made.mesh, made.grid, options, context, made.counts);
         if (!missing.ok()) return missing.error();
         made.missing = std::move(*missing);
     }

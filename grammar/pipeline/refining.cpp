@@ -14,17 +14,21 @@
 #include "grammar/lower/thin_cells.h"
 #include "grammar/lower/torn_eaves.h"
 #include "grammar/lower/torn_rims.h"
+#include "grammar/pipeline/grids.h"
+#include "grammar/pipeline/halving_requests.h"
 #include "grammar/pipeline/triangles_of_cells.h"
+#include "modeler/core/random.h"
 #include "modeler/mesh/refine.h"
 #include "modeler/mesh/region.h"
 
 namespace sgm::pipeline {
 namespace {
 
-constexpr size_t mostGrowth = 4;         ///< of triangles
-constexpr size_t tornDivisor = 4;        ///< of that bound, for how much more what is torn may use
-constexpr double cellsPerTriangle = 16;  ///< at most looked at, of the triangles that the mesh may have
-constexpr int mostHalvingsOfCells = 3;
+constexpr size_t mostGrowth = 4;           ///< of triangles
+constexpr size_t tornDivisor = 4;          ///< of that bound, for how much more what is torn may use
+constexpr double cellsPerTriangle = 16;    ///< at most looked at, of the triangles that the mesh may have
+constexpr uint64_t sampledOf = 8;          ///< parts: one tells what the others may take
+constexpr size_t fewestSampled = 256;      ///< parts
 constexpr double leastMissingEaves = 0.5;  ///< share of eaves that the mesh is said to lack
 
 /// Cells that are halved, by how often.
@@ -33,20 +37,25 @@ using HalvedCells = std::array<mesh::CellSet, mostHalvingsOfCells + 1>;
 class ThinPartRefiner {
 public:
     ThinPartRefiner(const Model& model, mesh::Mesh& mesh, const mesh::Grid& grid,
-                    const mesh::PolygonizeOptions& options, Context& context)
+                    const mesh::PolygonizeOptions& options, Context& context, mesh::Counts& counts)
         : model_(model),
           mesh_(mesh),
           grid_(grid),
+          askedCell_m_(grid.cell_m),
           most_(mesh::isExpensive(model.tape) ? 0 : std::min(options.halvings, mostHalvingsOfCells)),
+          options_(options),
           context_(context),
-          leastBound_(options.halvedTriangles),
-          mostTriangles_(std::max(mostGrowth * mesh.triangleCount(), leastBound_)) {}
+          counts_(counts),
+          mostTriangles_(std::max(mostGrowth * mesh.triangleCount(), options.halvedTriangles)) {}
 
     /// Cells around what the mesh lacks are meshed anew, and again with smaller ones while some of it is still missing:
     /// within its scope a part may be thinner. What isn't missing stays so, for smaller cells have the larger ones'
     /// corners. What the mesh has, but torn, comes last: it may use what is left of the triangles.
     Result<std::vector<lower::ThinPart>> run() {
-        auto missing = hold(lower::findMissingParts);
+        if (const Status s = halveAllBySample(); !s.ok()) return s.error();
+        bool isRefined = false;
+        auto missing = holdAtOnce(isRefined);
+        if (isRefined) missing = hold(lower::findMissingParts, std::move(*missing));
         if (!missing.ok()) return missing;
         const double seconds = halvingSeconds_;
         mostTriangles_ = std::max(mostTriangles_, mesh_.triangleCount()) + mostTriangles_ / tornDivisor;
@@ -77,7 +86,8 @@ public:
         }
         std::erase_if(*missing, [](const lower::ThinPart& part) { return !(part.missing > 0); });
         for (lower::ThinPart& part : *missing)
-            part.halvings = most_, part.mostTriangles = leastBound_, part.isBounded = isBounded(part);
+            part.halvings = most_ + allHalved_, part.mostTriangles = options_.halvedTriangles,
+            part.isBounded = isBounded(part);
         context_.stages.emplace_back("thin parts", findingSeconds_);
         if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
         return missing;
@@ -85,16 +95,7 @@ public:
 
 private:
     using Finder = decltype(lower::findMissingParts);
-    /// Around a part, at its eaves, or beside a face.
-    using Place = std::tuple<OriginId, bool, int>;
-    /// What is to be halved for a part.
-    struct Request {
-        Place place;
-        std::vector<Vec3i> cells;
-        double wholeTriangles;  ///< of the part in cells that aren't halved; 0 of walls
-    };
-    /// By how often cells are to be halved.
-    using RequestsByHalvings = std::array<std::vector<Request>, mostHalvingsOfCells + 1>;
+    using Place = HalvingRequest::Place;
     static Place placeOf(const lower::ThinPart& part) {
         return {part.part, part.kind == lower::ThinPart::Kind::Eaves, part.face};
     }
@@ -113,32 +114,113 @@ private:
 
     Result<std::vector<lower::ThinPart>> find(Finder& finder, const std::vector<lower::ThinPart>* among) {
         const Stopwatch finding;
-        auto found = finder(model_.derivation, *model_.lowered, model_.tape, mesh_, grid_.cell_m, context_.threads,
+        // Cells half as large as those that were asked for judge well enough what is off the surface.
+        const float cell_m =
+            &finder == &lower::findOffSurface ? std::max(grid_.cell_m, askedCell_m_ / 2) : grid_.cell_m;
+        auto found = finder(model_.derivation, *model_.lowered, model_.tape, mesh_, cell_m, context_.threads,
                             context_.progress, among);
         findingSeconds_ += finding.seconds();
         return found;
     }
 
-    /// Halves cells while that makes what is found fewer. Returns what is left.
-    Result<std::vector<lower::ThinPart>> hold(Finder& finder) {
-        std::optional<std::vector<lower::ThinPart>> before;
+    /// Halves all cells where what some parts lack says that this takes less time, so that all parts are looked at
+    /// once.
+    Status halveAllBySample() {
+        const size_t parts = model_.lowered->shapeOf.size();
+        if (!options_.halvesAll || most_ == 0 || parts < fewestSampled) return Done{};
+        std::vector<lower::ThinPart> some;
+        for (OriginId part = 1; part < parts; ++part)
+            if (pick(part, sampledOf) == 0)
+                for (int face = -1; face < 6; ++face) some.push_back({.part = part, .face = face, .places = {}});
+        const auto missing = find(lower::findMissingParts, &some);
+        if (!missing.ok()) return missing.error();
+        RequestsByHalvings asked = cellsAround(*missing, {});
+        tried_.clear(), bounded_.clear();
+        leaveOutFiner(asked);
+        const GrowthByHalvings growth = multiplied(growthBy(asked, mesh_, grid_), sampledOf, mesh_.triangleCount());
+        const int halvings = halvingsOfAll(growth, mesh_.triangleCount(), most_, mostTriangles_);
+        return halvings > 0 ? halveAll(halvings) : Done{};
+    }
+
+    /// Halves cells around all that is missing or torn in the mesh as it is, or where that might take too many
+    /// triangles around what is missing: few times are to suffice. Returns what was missing.
+    Result<std::vector<lower::ThinPart>> holdAtOnce(bool& isRefined) {
+        auto missing = find(lower::findMissingParts, nullptr);
+        if (!missing.ok() || most_ == 0) return missing;
+        const std::map<Place, int> before;
+        RequestsByHalvings asked = cellsAround(*missing, before);
+        const std::map<Place, int> tried = tried_;
+        const std::set<Place> bounded = bounded_;
+        RequestsByHalvings all = asked;
+        for (Finder* const finder : {lower::findTornParts, lower::findOffSurface}) {
+            const auto torn = find(*finder, nullptr);
+            if (!torn.ok()) return torn;
+            RequestsByHalvings more = cellsAround(*torn, before);
+            for (size_t halvings = 1; halvings < all.size(); ++halvings)
+                std::move(more[halvings].begin(), more[halvings].end(), std::back_inserter(all[halvings]));
+        }
+        leaveOutFiner(all);
+        const GrowthByHalvings growth = growthBy(all, mesh_, grid_);
+        const int halvings =
+            options_.halvesAll ? halvingsOfAll(growth, mesh_.triangleCount(), most_, mostTriangles_) : 0;
+        if (halvings > 0) {
+            if (const Status s = halveAll(halvings); !s.ok()) return s.error();
+            return holdAtOnce(isRefined);
+        }
+        if (std::accumulate(growth.begin(), growth.end(), size_t{0}) <= room())
+            asked = std::move(all);
+        else
+            tried_ = tried, bounded_ = bounded;
+        if (const Status s = refineByHalvings(std::move(asked), isRefined); !s.ok()) return s.error();
+        return missing;
+    }
+
+    /// Halves cells while that makes what is found fewer, of all parts or of some. Returns what is left.
+    Result<std::vector<lower::ThinPart>> hold(Finder& finder,
+                                              std::optional<std::vector<lower::ThinPart>> among = std::nullopt) {
         for (;;) {
-            auto found = find(finder, before ? &*before : nullptr);
+            auto found = find(finder, among ? &*among : nullptr);
             if (!found.ok()) return found;
-            RequestsByHalvings asked = cellsAround(*found);
             bool isRefined = false;
-            for (int halvings = 1; halvings <= most_; ++halvings)
-                if (const Status s =
-                        refine(std::move(asked[static_cast<size_t>(halvings)]), halvings, mostTriangles_, isRefined);
-                    !s.ok())
-                    return s.error();
+            if (const Status s = refineByHalvings(cellsAround(*found, std::map(tried_)), isRefined); !s.ok())
+                return s.error();
             if (!isRefined) return found;
-            before = std::move(*found);
+            among = std::move(*found);
         }
     }
 
+    size_t room() const { return mostTriangles_ - std::min(mostTriangles_, mesh_.triangleCount()); }
+
+    /// Meshes all anew in smaller cells.
+    Status halveAll(int halvings) {
+        const Stopwatch watch;
+        const int parts = 1 << halvings;
+        const mesh::Grid finer{grid_.origin, grid_.cell_m / static_cast<float>(parts), grid_.cells * parts};
+        grid_ = moveOffPlanes(finer, model_.derivation);
+        const auto blocks = mesh::subdivide(model_.tape, grid_, options_.threads, context_.progress, counts_);
+        if (!blocks.ok()) return blocks.error();
+        auto mesh = mesh::polygonize(*blocks, grid_, options_, context_.progress, counts_);
+        if (!mesh.ok()) return mesh.error();
+        mesh_ = std::move(*mesh);
+        most_ -= halvings, allHalved_ += halvings;
+        tried_.clear(), bounded_.clear();
+        halvingSeconds_ += watch.seconds();
+        return Done{};
+    }
+
+    /// Those that are halved more often come last, so that they stay where cells of both meet.
+    Status refineByHalvings(RequestsByHalvings asked, bool& isRefined) {
+        leaveOutFiner(asked);
+        for (int halvings = 1; halvings <= most_; ++halvings)
+            if (Status s = refine(std::move(asked[static_cast<size_t>(halvings)]), halvings, mostTriangles_, isRefined);
+                !s.ok())
+                return s;
+        return Done{};
+    }
+
     /// Those with fewest cells first, where not all can be looked at.
-    RequestsByHalvings cellsAround(const std::vector<lower::ThinPart>& missing) {
+    RequestsByHalvings cellsAround(const std::vector<lower::ThinPart>& missing,
+                                   const std::map<Place, int>& triedBefore) {
         struct Wish {
             const lower::ThinPart* part;
             int halvings;
@@ -147,7 +229,8 @@ private:
         std::vector<Wish> wishes, thinner;
         double cellCount = 0;
         for (const lower::ThinPart& part : missing) {
-            const int before = tried_[placeOf(part)];
+            const auto known = triedBefore.find(placeOf(part));
+            const int before = known == triedBefore.end() ? 0 : known->second;
             const int halvings = std::max(before + 1, lower::halvingsFor(part, grid_.cell_m));
             if (before >= most_) continue;
             const Wish wish{&part, std::min(halvings, most_), lower::countCellsAround(part, grid_)};
@@ -190,44 +273,17 @@ private:
         return 0;
     }
 
-    static mesh::CellSet allOf(std::span<const Request> asked) {
-        mesh::CellSet all;
-        for (const Request& one : asked)
-            for (const Vec3i cell : one.cells) all.insert(cell);
-        return all;
-    }
-
-    /// About how many triangles more the mesh has where each part's cells are halved that often, without those of parts
-    /// before it. Nothing where all stay within the bound at any rate.
-    std::vector<size_t> guessGrowth(std::span<const Request> asked, int halvings, size_t room) const {
-        const mesh::CellSet all = allOf(asked);
-        const size_t after = trianglesOfHalved(halvings);
-        if (all.size() * after <= room) return {};
-        std::vector<size_t> growth(asked.size());
-        const std::vector<uint32_t> counts = countTriangles(mesh_, grid_, all);
-        size_t next = 0;  // of all cells, which come in the order of the parts
-        for (size_t i = 0; i < asked.size(); ++i)
-            for (const Vec3i cell : asked[i].cells) {
-                if (next == all.size() || all.list()[next] != cell) continue;
-                if (counts[next++] > 0) growth[i] += after;
-            }
-        // Where the mesh shows nothing of a part, its size tells how many there will be.
-        for (size_t i = 0; i < asked.size(); ++i)
-            growth[i] = std::max(growth[i], static_cast<size_t>(std::ldexp(asked[i].wholeTriangles, 2 * halvings)));
-        return growth;
-    }
-
     /// Halves cells so often. Where the mesh would have too many triangles, those of parts that take most of them are
     /// halved less often.
-    Status refine(std::vector<Request> asked, int halvings, size_t mostTriangles, bool& isRefined) {
+    Status refine(std::vector<HalvingRequest> asked, int halvings, size_t mostTriangles, bool& isRefined) {
         const size_t room = mostTriangles - std::min(mostTriangles, mesh_.triangleCount());
-        const std::vector<size_t> growth = guessGrowth(asked, halvings, room);
+        const std::vector<size_t> growth = guessGrowth(asked, mesh_, grid_, halvings, room);
         const size_t sum = std::accumulate(growth.begin(), growth.end(), size_t{0});
         if (sum <= room) return refineAll(asked, halvings, mostTriangles, isRefined);
         std::vector<size_t> order(asked.size());
         std::iota(order.begin(), order.end(), size_t{0});
         std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return growth[a] < growth[b]; });
-        std::vector<Request> kept, less;
+        std::vector<HalvingRequest> kept, less;
         size_t growthOfKept = 0;
         for (const size_t i : order) {
             // What is halved less often may take up to half of the triangles that the bound leaves.
@@ -248,12 +304,12 @@ private:
     /// Halves cells so often, the first alone where that takes too many triangles when they are halved once. Where they
     /// come to take others with them that were halved more often, and hold there what larger ones don't, all of them
     /// are halved as often as these.
-    Status refineAll(std::span<const Request> asked, int halvings, size_t mostTriangles, bool& isRefined) {
-        const mesh::CellSet cells = allOf(asked);
+    Status refineAll(std::span<const HalvingRequest> asked, int halvings, size_t mostTriangles, bool& isRefined) {
+        const mesh::CellSet cells = cellsOf(asked);
         if (cells.empty()) return Done{};
         const Stopwatch watch;
         const auto bound = [&] {
-            for (const Request& one : asked) bounded_.insert(one.place);
+            for (const HalvingRequest& one : asked) bounded_.insert(one.place);
         };
         for (;;) {
             const size_t most = halvings > 1 ? ~size_t{0} : mostTriangles;
@@ -265,7 +321,7 @@ private:
             if (const int finest = halvingsIn(refined->made->cells); finest > halvings) {
                 halvings = finest;
                 const size_t room = mostTriangles - std::min(mostTriangles, mesh_.triangleCount());
-                const std::vector<size_t> growth = guessGrowth(asked, halvings, room);
+                const std::vector<size_t> growth = guessGrowth(asked, mesh_, grid_, halvings, room);
                 if (std::accumulate(growth.begin(), growth.end(), size_t{0}) <= room) continue;
                 bound();
                 break;
@@ -281,10 +337,13 @@ private:
 
     const Model& model_;
     mesh::Mesh& mesh_;
-    const mesh::Grid& grid_;
-    const int most_;
+    mesh::Grid grid_;
+    const float askedCell_m_;
+    int most_;           ///< halvings of these cells
+    int allHalved_ = 0;  ///< so often
+    const mesh::PolygonizeOptions& options_;
     Context& context_;
-    const size_t leastBound_;
+    mesh::Counts& counts_;
     size_t mostTriangles_;
     std::map<Place, int> tried_;  ///< halvings of the cells there
     std::set<Place> bounded_;     ///< where halving ended at the bound of triangles
@@ -295,8 +354,9 @@ private:
 }  // namespace
 
 Result<std::vector<lower::ThinPart>> holdThinParts(const Model& model, mesh::Mesh& mesh, const mesh::Grid& grid,
-                                                   const mesh::PolygonizeOptions& options, Context& context) {
-    return ThinPartRefiner(model, mesh, grid, options, context).run();
+                                                   const mesh::PolygonizeOptions& options, Context& context,
+                                                   mesh::Counts& counts) {
+    return ThinPartRefiner(model, mesh, grid, options, context, counts).run();
 }
 
 }  // namespace sgm::pipeline

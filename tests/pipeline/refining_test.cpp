@@ -353,9 +353,10 @@ TEST(Refining, LongSlopesAndEavesAreWhole) {
         for (const int resolution : {64, 110, 128}) {
             Context context{nullptr, 2};
             const Model model = modelOf("grammar 2\n" + std::string(c.text), context);
-            const MeshedModel made = meshed(model, resolution, 3);
+            MeshedModel made = meshed(model, resolution, 3);
             EXPECT_TRUE(made.missing->empty()) << c.text << resolution;
-            const auto figures = mesh::measure(made.mesh);
+            const MeshSource source{model.tape, mesh::Surface::Crisp, made.grid.cell_m};
+            const auto figures = mesh::measure(edited(std::move(made.mesh), {}, source, context).value());
             EXPECT_NEAR(figures.volume_m3, c.volume_m3, .002 * c.volume_m3) << c.text << resolution;
             EXPECT_NEAR(static_cast<double>(figures.bounds.size().z), c.depth_m, .2) << c.text << resolution;
         }
@@ -387,9 +388,8 @@ TEST(Refining, FollowedStepsGiveTheBytesOfAWholeBuild) {
         const Model model = modelOf(text, context);
         const mesh::Grid grid = gridOf(model, 32);
         const auto step = followed.meshed(grid, context);
-        auto whole = makeModel(grammar, *options, context);
-        ASSERT_TRUE(whole.ok());
-        const auto all = makeMesh(*whole, grid, {.surface = mesh::Surface::Crisp}, context);
+        const auto all =
+            makeMesh(*makeModel(grammar, *options, context), grid, {.surface = mesh::Surface::Crisp}, context);
         ASSERT_TRUE(step.ok() && all.ok());
         EXPECT_EQ(mesh::bytesOf(step->mesh), mesh::bytesOf(all->mesh)) << width;
         EXPECT_EQ(step->missing->size(), all->missing->size());

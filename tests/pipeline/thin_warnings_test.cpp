@@ -69,7 +69,7 @@ TEST(ThinWarnings, NameWhatStaysTornAtTheBoundOfTriangles) {
         "start A -> size (300, 90, .6) turn 25deg split y { { ~9m: Row }* }\n"
         "rule Row -> cube - Holes\n"
         "rule Holes -> split x { { ~6m: Hole }* }\nrule Hole -> cube size (4m, 7m, 300%)\n",
-        240);
+        240, 3, million / 2);
     ASSERT_FALSE(wall.warnings.empty());
     EXPECT_NE(wall.warnings[0].text.find("takes too many triangles"), std::string::npos) << wall.warnings[0].text;
 }

@@ -18,7 +18,8 @@ struct FinerMesh {
 };
 Result<FinerMesh> withThinParts(const BuiltMesh& coarse, pipeline::Context& context) {
     mesh::Mesh mesh = *coarse.mesh;
-    auto missing = pipeline::holdThinParts(coarse.of->model, mesh, coarse.grid, {}, context);
+    mesh::Counts counts;
+    auto missing = pipeline::holdThinParts(coarse.of->model, mesh, coarse.grid, {.halvesAll = false}, context, counts);
     if (!missing.ok()) return missing.error();
     if (mesh.triangleCount() == coarse.mesh->triangleCount()) return FinerMesh{nullptr, std::move(*missing)};
     auto finer = std::make_shared<BuiltMesh>(coarse);
