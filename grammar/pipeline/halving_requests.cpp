@@ -10,7 +10,8 @@ namespace sgm::pipeline {
 
 namespace {
 
-constexpr size_t costOfHalved = 4;  ///< what a triangle takes in halved cells beside others, by one of a whole mesh
+constexpr double costOfHalved = 4;    ///< what a triangle takes in halved cells beside others, by one of a whole mesh
+constexpr double leftInHalves = 0.6;  ///< of what is to be halved oftener, for parts reach farther in larger cells
 
 }  // namespace
 
@@ -75,13 +76,14 @@ GrowthByHalvings multiplied(GrowthByHalvings growth, int times, size_t triangles
 }
 
 int halvingsOfAll(const GrowthByHalvings& growth, size_t triangles, int most, size_t mostTriangles) {
-    size_t left = std::accumulate(growth.begin(), growth.end(), size_t{0}), least = costOfHalved * left;
+    auto whole = static_cast<double>(triangles);
+    double left = std::accumulate(growth.begin(), growth.end(), 0.0), least = costOfHalved * left, share = 1;
     int best = 0;
     for (int halvings = 1; halvings <= most; ++halvings) {
-        // What is left is about three fifths each time, since parts reach farther in larger cells.
-        triangles *= 4, left = (left - std::min(left, growth[static_cast<size_t>(halvings)])) / 5 * 3;
-        if (triangles + left > mostTriangles) break;
-        if (const size_t cost = triangles + costOfHalved * left; cost < least) least = cost, best = halvings;
+        whole *= 4, share *= leftInHalves;
+        left = share * std::accumulate(growth.begin() + halvings + 1, growth.end(), 0.0);
+        if (whole + left > static_cast<double>(mostTriangles)) break;
+        if (const double cost = whole + costOfHalved * left; cost < least) least = cost, best = halvings;
     }
     return best;
 }

@@ -74,6 +74,7 @@ public:
     /// What completes tips. After cancelling some of it, or none.
     std::vector<TipFan> find() {
         if (!cancelled(progress_)) findCandidates();
+        if (candidates_.empty()) return {};
         listTriangles(nearestCut);
         keep(candidates_, [&](size_t i) { return mayBeTip(surface_, candidates_[i].vertex, candidates_[i].apex); });
         if (candidates_.empty()) return {};
