@@ -27,6 +27,7 @@ void leaveOutFiner(RequestsByHalvings& asked) {
     for (size_t halvings = asked.size() - 1; halvings > 0; --halvings) {
         for (HalvingRequest& one : asked[halvings])
             std::erase_if(one.cells, [&](Vec3i cell) { return finer.contains(cell); });
+        std::erase_if(asked[halvings], [](const HalvingRequest& one) { return one.cells.empty(); });
         if (halvings == 1) break;
         for (const HalvingRequest& one : asked[halvings])
             for (const Vec3i cell : one.cells) finer.insert(cell);

@@ -29,7 +29,7 @@ using RequestsByHalvings = std::array<std::vector<HalvingRequest>, mostHalvingsO
 /// The cells of all requests, each once, in the requests' order.
 mesh::CellSet cellsOf(std::span<const HalvingRequest> asked);
 
-/// Takes cells from requests that others want to be halved more often.
+/// Takes cells from requests that others want to be halved more often, and leaves out what is empty then.
 void leaveOutFiner(RequestsByHalvings& asked);
 
 /// About how many triangles more the mesh has where each request's cells are halved so often, without those of requests
@@ -39,10 +39,10 @@ std::vector<size_t> guessGrowth(std::span<const HalvingRequest> asked, const mes
 
 /// About how many triangles the cells that show some of the surface come to have, by how often they are halved.
 using GrowthByHalvings = std::array<size_t, mostHalvingsOfCells + 1>;
-/// Of cells that each are in one list alone. O(n) in the mesh.
+/// The growth of what is asked for; each cell is in one list alone. O(n) in the mesh.
 GrowthByHalvings growthBy(const RequestsByHalvings& asked, const mesh::Mesh& mesh, const mesh::Grid& grid);
 
-/// The same of so many times the requests, whose cells lie by chance among those of a mesh of `triangles`.
+/// The growth by so many times the requests, whose cells lie by chance among those of a mesh of `triangles`.
 GrowthByHalvings multiplied(GrowthByHalvings growth, int times, size_t triangles);
 
 /// How often all cells of a mesh of `triangles`, instead of those that are asked for, are halved with profit, at most

@@ -24,8 +24,7 @@ public:
     void compile();
     /// The mesh of the tape on a grid (mesh::gridToKeep); see mesh::Rebuild.
     Result<const mesh::Mesh*> mesh(const mesh::Grid& grid, Progress* progress, mesh::Counts& counts);
-    /// That mesh with its grid and counts, without blocks, and with cells halved as in makeMesh, whose stages it has,
-    /// but never all of them: what doesn't change keeps its vertices.
+    /// That mesh with its grid and counts, without blocks, and with cells halved as in makeMesh, whose stages it has.
     Result<MeshedModel> meshed(const mesh::Grid& grid, Context& context);
 
     /// The model of the last `to`, valid until the next call.

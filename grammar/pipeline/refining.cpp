@@ -42,8 +42,9 @@ public:
           mesh_(mesh),
           grid_(grid),
           askedCell_m_(grid.cell_m),
-          most_(mesh::isExpensive(model.tape) ? 0 : std::min(options.halvings, mostHalvingsOfCells)),
+          most_(allowedHalvings(model, options)),
           options_(options),
+          mayHalveAll_(options.halvesAll),
           context_(context),
           counts_(counts),
           mostTriangles_(std::max(mostGrowth * mesh.triangleCount(), options.halvedTriangles)) {}
@@ -55,7 +56,7 @@ public:
         if (const Status s = halveAllBySample(); !s.ok()) return s.error();
         bool isRefined = false;
         auto missing = holdAtOnce(isRefined);
-        if (isRefined) missing = hold(lower::findMissingParts, std::move(*missing));
+        if (missing.ok() && isRefined) missing = hold(lower::findMissingParts, std::move(*missing));
         if (!missing.ok()) return missing;
         const double seconds = halvingSeconds_;
         mostTriangles_ = std::max(mostTriangles_, mesh_.triangleCount()) + mostTriangles_ / tornDivisor;
@@ -86,7 +87,7 @@ public:
         }
         std::erase_if(*missing, [](const lower::ThinPart& part) { return !(part.missing > 0); });
         for (lower::ThinPart& part : *missing)
-            part.halvings = most_ + allHalved_, part.mostTriangles = options_.halvedTriangles,
+            part.halvings = allowedHalvings(model_, options_), part.mostTriangles = options_.halvedTriangles,
             part.isBounded = isBounded(part);
         context_.stages.emplace_back("thin parts", findingSeconds_);
         if (halvingSeconds_ > 0) context_.stages.emplace_back("halve cells", halvingSeconds_);
@@ -94,6 +95,10 @@ public:
     }
 
 private:
+    static int allowedHalvings(const Model& model, const mesh::PolygonizeOptions& options) {
+        return mesh::isExpensive(model.tape) ? 0 : std::min(options.halvings, mostHalvingsOfCells);
+    }
+
     using Finder = decltype(lower::findMissingParts);
     using Place = HalvingRequest::Place;
     static Place placeOf(const lower::ThinPart& part) {
@@ -127,7 +132,7 @@ private:
     /// once.
     Status halveAllBySample() {
         const size_t parts = model_.lowered->shapeOf.size();
-        if (!options_.halvesAll || most_ == 0 || parts < fewestSampled) return Done{};
+        if (!mayHalveAll_ || most_ == 0 || parts < fewestSampled) return Done{};
         std::vector<lower::ThinPart> some;
         for (OriginId part = 1; part < parts; ++part)
             if (pick(part, sampledOf) == 0)
@@ -138,8 +143,10 @@ private:
         tried_.clear(), bounded_.clear();
         leaveOutFiner(asked);
         const GrowthByHalvings growth = multiplied(growthBy(asked, mesh_, grid_), sampledOf, mesh_.triangleCount());
-        const int halvings = halvingsOfAll(growth, mesh_.triangleCount(), most_, mostTriangles_);
-        return halvings > 0 ? halveAll(halvings) : Done{};
+        const int halvings = halvingsForAll(growth);
+        if (halvings == 0) return Done{};
+        const auto isHalved = halveAll(halvings);
+        return isHalved.ok() ? Status(Done{}) : isHalved.error();
     }
 
     /// Halves cells around all that is missing or torn in the mesh as it is, or where that might take too many
@@ -151,23 +158,27 @@ private:
         RequestsByHalvings asked = cellsAround(*missing, before);
         const std::map<Place, int> tried = tried_;
         const std::set<Place> bounded = bounded_;
+        std::set<OriginId> asWholes;  // is asked for already
+        for (const lower::ThinPart& part : *missing)
+            if (part.kind == lower::ThinPart::Kind::Part && !part.isWall()) asWholes.insert(part.part);
         RequestsByHalvings all = asked;
         for (Finder* const finder : {lower::findTornParts, lower::findOffSurface}) {
-            const auto torn = find(*finder, nullptr);
+            auto torn = find(*finder, nullptr);
             if (!torn.ok()) return torn;
+            if (finder == lower::findTornParts)  // which returns what is missing too
+                std::erase_if(*torn, [&](const lower::ThinPart& part) { return asWholes.contains(part.part); });
             RequestsByHalvings more = cellsAround(*torn, before);
             for (size_t halvings = 1; halvings < all.size(); ++halvings)
                 std::move(more[halvings].begin(), more[halvings].end(), std::back_inserter(all[halvings]));
         }
         leaveOutFiner(all);
         const GrowthByHalvings growth = growthBy(all, mesh_, grid_);
-        const int halvings =
-            options_.halvesAll ? halvingsOfAll(growth, mesh_.triangleCount(), most_, mostTriangles_) : 0;
-        if (halvings > 0) {
-            if (const Status s = halveAll(halvings); !s.ok()) return s.error();
-            return holdAtOnce(isRefined);
+        if (const int halvings = halvingsForAll(growth); halvings > 0) {
+            const auto isHalved = halveAll(halvings);
+            if (!isHalved.ok()) return isHalved.error();
+            if (*isHalved) return holdAtOnce(isRefined);
         }
-        if (std::accumulate(growth.begin(), growth.end(), size_t{0}) <= room())
+        if (fits(all))
             asked = std::move(all);
         else
             tried_ = tried, bounded_ = bounded;
@@ -182,30 +193,51 @@ private:
             auto found = find(finder, among ? &*among : nullptr);
             if (!found.ok()) return found;
             bool isRefined = false;
-            if (const Status s = refineByHalvings(cellsAround(*found, std::map(tried_)), isRefined); !s.ok())
-                return s.error();
+            if (const Status s = refineByHalvings(cellsAround(*found, tried_), isRefined); !s.ok()) return s.error();
             if (!isRefined) return found;
             among = std::move(*found);
         }
     }
 
-    size_t room() const { return mostTriangles_ - std::min(mostTriangles_, mesh_.triangleCount()); }
+    /// Whether the mesh may have as many triangles as all requests take, by a guess.
+    bool fits(const RequestsByHalvings& asked) const {
+        size_t room = mostTriangles_ - std::min(mostTriangles_, mesh_.triangleCount());
+        for (int halvings = 1; halvings <= most_; ++halvings) {
+            const std::vector<size_t> growth =
+                guessGrowth(asked[static_cast<size_t>(halvings)], mesh_, grid_, halvings, 0);
+            const size_t sum = std::accumulate(growth.begin(), growth.end(), size_t{0});
+            if (sum > room) return false;
+            room -= sum;
+        }
+        return true;
+    }
 
-    /// Meshes all anew in smaller cells.
-    Status halveAll(int halvings) {
-        const Stopwatch watch;
+    mesh::Grid halvedGrid(int halvings) const {
         const int parts = 1 << halvings;
-        const mesh::Grid finer{grid_.origin, grid_.cell_m / static_cast<float>(parts), grid_.cells * parts};
-        grid_ = moveOffPlanes(finer, model_.derivation);
-        const auto blocks = mesh::subdivide(model_.tape, grid_, options_.threads, context_.progress, counts_);
-        if (!blocks.ok()) return blocks.error();
-        auto mesh = mesh::polygonize(*blocks, grid_, options_, context_.progress, counts_);
-        if (!mesh.ok()) return mesh.error();
-        mesh_ = std::move(*mesh);
-        most_ -= halvings, allHalved_ += halvings;
-        tried_.clear(), bounded_.clear();
+        return {grid_.origin, grid_.cell_m / static_cast<float>(parts), grid_.cells * parts};
+    }
+    /// How often all cells are halved: not so that there are too many along an axis, or too small ones.
+    int halvingsForAll(const GrowthByHalvings& growth) const {
+        int most = 0;
+        while (mayHalveAll_ && most < most_ && mesh::checkGrid(halvedGrid(most + 1)).ok()) ++most;
+        return halvingsOfAll(growth, mesh_.triangleCount(), most, options_.halvedTriangles);
+    }
+
+    /// Meshes all anew in smaller cells, where these are possible. Returns whether they are.
+    Result<bool> halveAll(int halvings) {
+        const Stopwatch watch;
+        const mesh::Grid grid = moveOffPlanes(halvedGrid(halvings), model_.derivation);
+        const auto blocks = mesh::subdivide(model_.tape, grid, context_.threads, context_.progress, counts_);
+        auto mesh = blocks.ok() ? mesh::polygonize(*blocks, grid, options_, context_.progress, counts_)
+                                : Result<mesh::Mesh>(blocks.error());
         halvingSeconds_ += watch.seconds();
-        return Done{};
+        if (!mesh.ok() && mesh.error().kind == Error::Kind::Cancelled) return mesh.error();
+        mayHalveAll_ = mesh.ok();
+        if (!mesh.ok()) return false;
+        mesh_ = std::move(*mesh), grid_ = grid;
+        most_ -= halvings;
+        tried_.clear(), bounded_.clear();
+        return true;
     }
 
     /// Those that are halved more often come last, so that they stay where cells of both meet.
@@ -254,11 +286,12 @@ private:
             const lower::ThinPart& part = *wish.part;
             mesh::CellSet around;
             lower::addCellsAround(part, grid_, around);
+            const int wanted = std::max(wish.halvings, halvingsIn(around));
             int& tried = tried_[placeOf(part)];
-            tried = std::max(wish.halvings, halvingsIn(around));
+            tried = std::max(tried, wanted);
             // Places of walls overlap, for they are found along all axes.
             const double triangles = part.isWall() ? 0 : trianglesOfPart(part, static_cast<double>(grid_.cell_m));
-            asked[static_cast<size_t>(tried)].push_back({placeOf(part), around.list(), triangles});
+            asked[static_cast<size_t>(wanted)].push_back({placeOf(part), around.list(), triangles});
         }
         return asked;
     }
@@ -339,9 +372,9 @@ private:
     mesh::Mesh& mesh_;
     mesh::Grid grid_;
     const float askedCell_m_;
-    int most_;           ///< halvings of these cells
-    int allHalved_ = 0;  ///< so often
+    int most_;  ///< halvings of these cells
     const mesh::PolygonizeOptions& options_;
+    bool mayHalveAll_;
     Context& context_;
     mesh::Counts& counts_;
     size_t mostTriangles_;

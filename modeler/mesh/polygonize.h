@@ -23,7 +23,8 @@ enum class Surface {
 struct PolygonizeOptions {
     Surface surface = Surface::Cubes;
     int halvings = 3;  ///< crisp cells around thin parts are halved so often at most; asked of who knows the parts
-    /// All of these where that takes less time. False: what doesn't change from mesh to mesh keeps its vertices.
+    /// All crisp cells may be halved where that takes less time. False: what doesn't change from mesh to mesh keeps its
+    /// vertices.
     bool halvesAll = true;
     /// So many triangles, or four times those that it has, a mesh may come to have by that.
     size_t halvedTriangles = 8'000'000;
