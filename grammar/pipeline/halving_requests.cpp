@@ -7,7 +7,6 @@
 #include "grammar/pipeline/triangles_of_cells.h"
 
 namespace sgm::pipeline {
-
 namespace {
 
 constexpr double costOfHalved = 4;    ///< what a triangle takes in halved cells beside others, by one of a whole mesh
@@ -35,10 +34,10 @@ void leaveOutFiner(RequestsByHalvings& asked) {
 }
 
 std::vector<size_t> guessGrowth(std::span<const HalvingRequest> asked, const mesh::Mesh& mesh, const mesh::Grid& grid,
-                                int halvings, size_t room) {
+                                int halvings, size_t budget) {
     const mesh::CellSet all = cellsOf(asked);
     const size_t after = trianglesOfHalved(halvings);
-    if (all.size() * after <= room) return {};
+    if (all.size() * after <= budget) return {};
     std::vector<size_t> growth(asked.size());
     const std::vector<uint32_t> counts = countTriangles(mesh, grid, all);
     size_t next = 0;  // of all cells, which come in the order of the requests

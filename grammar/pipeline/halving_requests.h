@@ -33,9 +33,9 @@ mesh::CellSet cellsOf(std::span<const HalvingRequest> asked);
 void leaveOutFiner(RequestsByHalvings& asked);
 
 /// About how many triangles more the mesh has where each request's cells are halved so often, without those of requests
-/// before it. Nothing where all together take no more than `room` at any rate. O(n) in the mesh.
+/// before it. Nothing where all together take no more than `budget` at any rate. O(n) in the mesh.
 std::vector<size_t> guessGrowth(std::span<const HalvingRequest> asked, const mesh::Mesh& mesh, const mesh::Grid& grid,
-                                int halvings, size_t room);
+                                int halvings, size_t budget);
 
 /// About how many triangles the cells that show some of the surface come to have, by how often they are halved.
 using GrowthByHalvings = std::array<size_t, mostHalvingsOfCells + 1>;

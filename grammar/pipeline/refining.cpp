@@ -201,13 +201,13 @@ private:
 
     /// Whether the mesh may have as many triangles as all requests take, by a guess.
     bool fits(const RequestsByHalvings& asked) const {
-        size_t room = mostTriangles_ - std::min(mostTriangles_, mesh_.triangleCount());
+        size_t budget = mostTriangles_ - std::min(mostTriangles_, mesh_.triangleCount());
         for (int halvings = 1; halvings <= most_; ++halvings) {
             const std::vector<size_t> growth =
                 guessGrowth(asked[static_cast<size_t>(halvings)], mesh_, grid_, halvings, 0);
             const size_t sum = std::accumulate(growth.begin(), growth.end(), size_t{0});
-            if (sum > room) return false;
-            room -= sum;
+            if (sum > budget) return false;
+            budget -= sum;
         }
         return true;
     }
@@ -309,10 +309,10 @@ private:
     /// Halves cells so often. Where the mesh would have too many triangles, those of parts that take most of them are
     /// halved less often.
     Status refine(std::vector<HalvingRequest> asked, int halvings, size_t mostTriangles, bool& isRefined) {
-        const size_t room = mostTriangles - std::min(mostTriangles, mesh_.triangleCount());
-        const std::vector<size_t> growth = guessGrowth(asked, mesh_, grid_, halvings, room);
+        const size_t budget = mostTriangles - std::min(mostTriangles, mesh_.triangleCount());
+        const std::vector<size_t> growth = guessGrowth(asked, mesh_, grid_, halvings, budget);
         const size_t sum = std::accumulate(growth.begin(), growth.end(), size_t{0});
-        if (sum <= room) return refineAll(asked, halvings, mostTriangles, isRefined);
+        if (sum <= budget) return refineAll(asked, halvings, mostTriangles, isRefined);
         std::vector<size_t> order(asked.size());
         std::iota(order.begin(), order.end(), size_t{0});
         std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return growth[a] < growth[b]; });
@@ -320,8 +320,8 @@ private:
         size_t growthOfKept = 0;
         for (const size_t i : order) {
             // What is halved less often may take up to half of the triangles that the bound leaves.
-            const size_t left = sum - growthOfKept - growth[i], rest = std::min(left / 4, room / 2);
-            const bool isKept = less.empty() && growthOfKept + growth[i] + (halvings > 1 ? rest : 0) <= room;
+            const size_t left = sum - growthOfKept - growth[i], rest = std::min(left / 4, budget / 2);
+            const bool isKept = less.empty() && growthOfKept + growth[i] + (halvings > 1 ? rest : 0) <= budget;
             if (isKept) growthOfKept += growth[i];
             if (!isKept) bounded_.insert(asked[i].place);
             (isKept || halvings == 1 ? kept : less).push_back(std::move(asked[i]));
@@ -353,9 +353,9 @@ private:
             if (!refined->made) break;
             if (const int finest = halvingsIn(refined->made->cells); finest > halvings) {
                 halvings = finest;
-                const size_t room = mostTriangles - std::min(mostTriangles, mesh_.triangleCount());
-                const std::vector<size_t> growth = guessGrowth(asked, mesh_, grid_, halvings, room);
-                if (std::accumulate(growth.begin(), growth.end(), size_t{0}) <= room) continue;
+                const size_t budget = mostTriangles - std::min(mostTriangles, mesh_.triangleCount());
+                const std::vector<size_t> growth = guessGrowth(asked, mesh_, grid_, halvings, budget);
+                if (std::accumulate(growth.begin(), growth.end(), size_t{0}) <= budget) continue;
                 bound();
                 break;
             }

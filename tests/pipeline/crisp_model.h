@@ -54,13 +54,19 @@ inline Model acrossGrid(Model model) {
 /// `resolution` cells along the longest side, halved up to `halvings` times around thin parts, to so many triangles; on
 /// two threads.
 inline MeshedModel meshed(const Model& model, int resolution, int halvings = 3,
-                          size_t triangles = mesh::PolygonizeOptions{}.halvedTriangles) {
+                          size_t triangles = mesh::PolygonizeOptions{}.halvedTriangles, bool halvesAll = true) {
     Context context{nullptr, 2};
-    auto made =
-        makeMesh(model, gridOf(model, resolution),
-                 {.surface = mesh::Surface::Crisp, .halvings = halvings, .halvedTriangles = triangles}, context);
+    auto made = makeMesh(
+        model, gridOf(model, resolution),
+        {.surface = mesh::Surface::Crisp, .halvings = halvings, .halvesAll = halvesAll, .halvedTriangles = triangles},
+        context);
     EXPECT_TRUE(made.ok());
     return std::move(*made);
+}
+
+/// A mesh some of whose cells are halved, never all of them.
+inline MeshedModel meshedInPart(const Model& model, int resolution) {
+    return meshed(model, resolution, 3, mesh::PolygonizeOptions{}.halvedTriangles, false);
 }
 
 /// The same of any model.

@@ -45,8 +45,7 @@ TEST(Refining, CellsThatDontFitTakeTheirNeighboursWithThem) {
     const std::string text = fileText("examples/buildings/warehouse.sgm");
     Context context{nullptr, 2};
     const Model model = modelOf(std::regex_replace(text, std::regex(" texture [^\n]*"), ""), context);
-    const MeshedModel made = meshed(model, 64, 3);
-    for (const lower::ThinPart& part : *made.missing) EXPECT_LT(part.missing, .02);  // teeth of its edges
+    EXPECT_TRUE(meshedInPart(model, 64).missing->empty());
 }
 
 /// A ring and a rod about as thick as a cell: the mesh had some of each everywhere, but torn.
@@ -346,10 +345,9 @@ TEST(Refining, LongSlopesAndEavesAreWhole) {
         for (const int resolution : {64, 110, 128}) {
             Context context{nullptr, 2};
             const Model model = modelOf("grammar 2\n" + std::string(c.text), context);
-            MeshedModel made = meshed(model, resolution, 3);
+            const MeshedModel made = meshedInPart(model, resolution);
             EXPECT_TRUE(made.missing->empty()) << c.text << resolution;
-            const MeshSource source{model.tape, mesh::Surface::Crisp, made.grid.cell_m};
-            const auto figures = mesh::measure(edited(std::move(made.mesh), {}, source, context).value());
+            const auto figures = mesh::measure(made.mesh);
             EXPECT_NEAR(figures.volume_m3, c.volume_m3, .002 * c.volume_m3) << c.text << resolution;
             EXPECT_NEAR(static_cast<double>(figures.bounds.size().z), c.depth_m, .2) << c.text << resolution;
         }

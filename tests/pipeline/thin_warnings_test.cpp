@@ -20,10 +20,10 @@ struct Warned {
 };
 
 Warned warned(const std::string& text, int resolution, int halvings = 3,
-              size_t triangles = mesh::PolygonizeOptions{}.halvedTriangles) {
+              size_t triangles = mesh::PolygonizeOptions{}.halvedTriangles, bool halvesAll = true) {
     Context context{nullptr, 2};
     Model model = acrossGrid(modelOf("grammar 2\n" + text, context));
-    MeshedModel made = meshed(model, resolution, halvings, triangles);
+    MeshedModel made = meshed(model, resolution, halvings, triangles, halvesAll);
     const auto missing = findMissingParts(model, made, 2, nullptr);
     EXPECT_TRUE(missing.ok());
     auto warnings = missingWarnings(model, made.grid, *missing);
@@ -69,7 +69,7 @@ TEST(ThinWarnings, NameWhatStaysTornAtTheBoundOfTriangles) {
         "start A -> size (300, 90, .6) turn 25deg split y { { ~9m: Row }* }\n"
         "rule Row -> cube - Holes\n"
         "rule Holes -> split x { { ~6m: Hole }* }\nrule Hole -> cube size (4m, 7m, 300%)\n",
-        240, 3, million / 2);
+        240, 3, 8 * million, /*halvesAll=*/false);
     ASSERT_FALSE(wall.warnings.empty());
     EXPECT_NE(wall.warnings[0].text.find("takes too many triangles"), std::string::npos) << wall.warnings[0].text;
 }
