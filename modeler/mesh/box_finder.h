@@ -36,6 +36,11 @@ public:
     template <class CornersOf, class Visit>
     void visitMeeting(std::span<const Vec3f> positions, size_t begin, size_t end, CornersOf&& cornersOf,
                       Visit&& visit) const;
+    /// False where no box meets `box`, by a coarse grid: O(1) where `box` is about as large as they are.
+    bool mayMeet(const Box3f& box) const {
+        Cells cells;
+        return cellsOf(box, cells) && isCoarseMarked(cells);
+    }
     /// The boxes that meet `box`, ascending. O(1) as a rule where none is near and `box` is about as large as they are.
     void find(const Box3f& box, std::vector<uint32_t>& found) const {
         found.clear();
@@ -108,7 +113,7 @@ void BoxFinder::visitMeeting(std::span<const Vec3f> positions, size_t begin, siz
             boxes[i] = boxOf(positions, cornersOf(first + i));
             all = {min(all.lo, boxes[i].lo), max(all.hi, boxes[i].hi)};
         }
-        if (Cells cells; !cellsOf(all, cells) || !isCoarseMarked(cells)) continue;
+        if (!mayMeet(all)) continue;
         for (size_t i = 0; i < count; ++i) {
             find(boxes[i], found);
             if (!found.empty()) visit(first + i, std::span<const uint32_t>(found));

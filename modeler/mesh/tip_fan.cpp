@@ -20,7 +20,7 @@ constexpr int rounds = 6;  ///< to find the apex
 // In cells:
 constexpr double apexRounding = 1e-3;  ///< what rounding leaves of the apex from planes around it
 constexpr double leastDepth = 0.05;    ///< of the highest vertex below the apex
-constexpr double onSurface = 0.03;     ///< the field at the apex, and the apex from the planes around it
+constexpr double surfaceSlack = 0.03;  ///< the field at the apex, and the apex from the planes around it
 constexpr double nearSurface = 0.25;   ///< the field on the triangles of the fan
 
 constexpr size_t mostCutOff = 3000;  ///< triangles around vertices
@@ -88,7 +88,7 @@ public:
             if (!meeting || meeting->error > within_m) return {};
             apex_ = meeting->point;
             axis_ = axisOf();
-            within_m = std::clamp(meeting->error, apexRounding * surface_.cell_m, onSurface * surface_.cell_m);
+            within_m = std::clamp(meeting->error, apexRounding * surface_.cell_m, surfaceSlack * surface_.cell_m);
         }
         if (!isApex()) return {};
         TipFan made{top_, apex_.as<float>(), {}, {}, 0};
@@ -222,7 +222,7 @@ private:
         const Vec3d step = axis_ * (apexSlack * surface_.cell_m);
         const std::array points{apex_.as<float>(), (apex_ + step).as<float>(), (apex_ - step).as<float>()};
         const std::vector<float> values = valuesAt(surface_, points);
-        return std::abs(values[0]) < onSurface * surface_.cell_m && std::min(values[1], values[2]) < 0;
+        return std::abs(values[0]) < surfaceSlack * surface_.cell_m && std::min(values[1], values[2]) < 0;
     }
 
     /// The triangles that go and those of the fan; false where one of these has a confined vertex that isn't taken.
@@ -347,7 +347,7 @@ std::optional<TipFan> fanAt(const TipSurface& surface, uint32_t vertex, Vec3d ap
                 isOpen[i] = builder.lacksConfined();
                 if (builder.reachesApex()) std::fill(isOpen.begin() + static_cast<ptrdiff_t>(i), isOpen.end(), false);
                 if (!fan) continue;
-                if (fan->error_m < onSurface * surface.cell_m) return fan;
+                if (fan->error_m < surfaceSlack * surface.cell_m) return fan;
                 if (!first) first = std::move(fan);
             }
     }

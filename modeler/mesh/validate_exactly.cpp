@@ -3,6 +3,7 @@
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
@@ -42,6 +43,7 @@ Result<MeshValidation> validate(const Mesh& mesh) {
         MeshValidation judgement;
         // A soup that is no manifold mesh is neither closed nor outward; splitting it where it isn't still lets CGAL
         // see crossings.
+        pmp::remove_isolated_points_in_polygon_soup(points, polygons);  // does_bound_a_volume fails on them
         const bool manifold = pmp::is_polygon_soup_a_polygon_mesh(polygons);
         if (!manifold) pmp::orient_polygon_soup(points, polygons);
         SurfaceMesh surface;

@@ -122,6 +122,17 @@ TEST(Judge, NoiseNeverCrossesItself) {
     EXPECT_FALSE(judged->selfIntersects);
 }
 
+TEST(Judge, VerticesWithoutTrianglesDontCount) {
+    Mesh m = tetrahedra({{0, 0, 0}});
+    m.chunks[0].positions.insert(m.chunks[0].positions.begin() + 2, Vec3f{7, 7, 7});
+    m.chunks[0].normals.push_back({0, 0, 1});
+    for (Triangle& t : m.chunks[0].triangles)
+        for (int k = 0; k < 3; ++k) t[k] += t[k] >= 2 ? 1 : 0;
+    const auto word = validate(m);
+    ASSERT_TRUE(word.ok());
+    EXPECT_TRUE(word->closed && word->outward && !word->selfIntersects);
+}
+
 TEST(Judge, SeesCrossingTetrahedra) {
     const auto apart = validate(tetrahedra({{0, 0, 0}, {2, 0, 0}}));
     ASSERT_TRUE(apart.ok());
