@@ -78,6 +78,7 @@ Status BakedObjects::makeMeshes(uint32_t object, Context& context) {
     SceneRequest request;
     request.meshing.surface = mesh::Surface::Crisp;
     request.meshing.halvings = 0;  // what is thinner than the cells isn't worth its bytes in a town
+    request.meshing.mergesCells = true;
     request.cell_m = cell_m_;
     const bool isInspected = inspected_.contains(object);
     auto meshed = meshObject(*placed.derivation, request, context, isInspected ? objects_.nameOf(placed) : "");

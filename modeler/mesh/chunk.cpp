@@ -100,8 +100,9 @@ BlockMesher::BlockMesher(const Grid& grid, const PolygonizeOptions& options)
                                            ? std::max(options.refineSteps, leastCrispSteps)
                                            : options.refineSteps)),
       bare_(options.positionsOnly && options.surface == Surface::Cubes),
-      crisp_(options.surface == Surface::Crisp ? std::make_unique<CrispBlock>() : nullptr) {
+      crisp_(options.surface == Surface::Crisp ? std::make_unique<CrispBlock>(options.mergesCells) : nullptr) {
     if (crisp_) samples_.keepTapes();
+    if (crisp_ && options.mergesCells) cells_.flat = std::make_unique<FlatCells>();
 }
 
 void BlockMesher::clear() {

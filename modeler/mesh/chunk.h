@@ -10,6 +10,7 @@
 
 #include "modeler/mesh/brick.h"
 #include "modeler/mesh/crisp_block.h"
+#include "modeler/mesh/flat_cells.h"
 #include "modeler/mesh/mesh.h"
 #include "modeler/mesh/polygonize.h"
 #include "modeler/mesh/vertices.h"
@@ -82,6 +83,7 @@ private:
         PageVector<SurfaceCell> list =
             PageVector<SurfaceCell>(blockCells * blockCells * blockCells + rowPadding);  ///< the first `count` count
         size_t count = 0, triangles = 0;
+        std::unique_ptr<FlatCells> flat;  ///< null where they stay as they are
     };
     /// What other blocks share.
     struct Seams {
@@ -104,6 +106,7 @@ private:
     void addCrispBrick(Vec3i brick, const BrickSigns& signs, const eval::Tape& tape);
     void findLabels(const eval::Tape& tape);
     void splitAtCreases(const Block& block, Chunk& chunk);
+    void takeSplit(Chunk& chunk) const;
     void listFaceSeams(Chunk& chunk) const;
     std::optional<OriginId> ownerAround(Vec3i brick, OriginId owner) const;
     void listSeams(Chunk& chunk);

@@ -9,7 +9,6 @@ namespace {
 
 constexpr int edgePlace(Vec3i corner, int axis) { return 3 * cornerNumber(corner.x, corner.y, corner.z) + axis; }
 constexpr Vec3i offset(int corner) { return {corner & 1, corner >> 1 & 1, corner >> 2}; }
-constexpr Vec3i unit(int axis) { return {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0}; }
 
 /// The brick of the cell at a corner of its block.
 size_t brickOf(Vec3i low) {
@@ -45,14 +44,12 @@ void CrispBlock::findMixedCells() {
             const uint32_t label = labelOf(triangle.x);
             mixed = mixed || label != labelOf(triangle.y) || label != labelOf(triangle.z);
         }
-        if (mixed) mixed_.push_back({c, static_cast<uint32_t>(first), static_cast<uint32_t>(end), 0});
+        if (mixed) mixed_.push_back({c, static_cast<uint32_t>(first), static_cast<uint32_t>(end)});
     }
 }
 
 /// The place of the vertex on an edge of the cell at `low`.
-uint32_t CrispBlock::vertexAt(Vec3i low, int edge) const {
-    return surface_->placeOf(surface_->number[edgePlace(low + offset(edgeCorner(edge)), edgeAxis(edge))]);
-}
+uint32_t CrispBlock::placeAt(Vec3i low, int edge) const { return surface_->placeOf(surface_->vertexOf(low, edge)); }
 
 const CellLoops& CrispBlock::loopsOfCell(const MixedCell& mixed) {
     const int inside = surface_->cells[mixed.cell].inside;
@@ -75,7 +72,7 @@ uint64_t CrispBlock::joinFaces(eval::Workspace& workspace) {
             std::array<uint32_t, 4> places{};  // of its vertices, by code
             for (int e = 0; e < edgesPerCell; ++e)
                 if (edgeAxis(e) != axis && (edgeCorner(e) >> axis & 1) == face % 2)
-                    places[static_cast<size_t>(codeInFace(e, axis))] = vertexAt(low, e);
+                    places[static_cast<size_t>(codeInFace(e, axis))] = placeAt(low, e);
             // Only where a segment of marching cubes has two labels is the neighbour mixed too.
             const int base = (face % 2) << axis;
             const bool diagonal = (cell.inside >> base & 1) != 0;  // inside corners are those at both low or high ends
@@ -83,7 +80,7 @@ uint64_t CrispBlock::joinFaces(eval::Workspace& workspace) {
                 return surface_->labels[places[p]] != surface_->labels[places[q]];
             };
             if (diagonal ? !differ(0, 2) && !differ(1, 3) : !differ(0, 3) && !differ(1, 2)) continue;
-            const auto key = static_cast<size_t>(4 * edgePlace(low + unit(axis) * (face % 2), axis));
+            const auto key = static_cast<size_t>(4 * edgePlace(low + stepAlong(axis) * (face % 2), axis));
             if (segmentAt_[key] == 0) {
                 Vec3f sum{};
                 for (const uint32_t p : places) sum += surface_->positions[p];
@@ -109,12 +106,12 @@ int32_t CrispBlock::segmentOf(const SurfaceCell& cell, const CellLoop& loop, int
     const Vec3i low = cornerIndices(cell.corner);
     const int edges[] = {loop.edges[static_cast<size_t>(side)],
                          loop.edges[static_cast<size_t>((side + 1) % loop.size)]};
-    const uint32_t place[] = {vertexAt(low, edges[0]), vertexAt(low, edges[1])};
+    const uint32_t place[] = {placeAt(low, edges[0]), placeAt(low, edges[1])};
     if (surface_->labels[place[0]] == surface_->labels[place[1]]) return -1;
     const int face = loop.faces[static_cast<size_t>(side)], axis = face / 2;
     const int codes[] = {codeInFace(edges[0], axis), codeInFace(edges[1], axis)};
     const int reversed = codes[0] > codes[1] ? 1 : 0;
-    const Vec3i corner = low + unit(axis) * (face % 2);
+    const Vec3i corner = low + stepAlong(axis) * (face % 2);
     uint32_t& known = segmentAt_[static_cast<size_t>(4 * edgePlace(corner, axis) + std::min(codes[0], codes[1]))];
     if (known == 0) {
         FaceSegment segment;
@@ -129,26 +126,46 @@ int32_t CrispBlock::segmentOf(const SurfaceCell& cell, const CellLoop& loop, int
     return 2 * static_cast<int32_t>(known - 1) + reversed;
 }
 
+/// Lists the segments of the mixed cells' loops, after those that are listed.
 void CrispBlock::findSegments() {
-    segments_.list.clear(), segments_.ends.clear(), segments_.codes.clear(), loops_.sides.clear();
+    loops_.sides.clear();
     for (const MixedCell& mixed : mixed_) {
+        if (mixed.isInRun) continue;
         const SurfaceCell& cell = surface_->cells[mixed.cell];
         const CellLoops& loops = loopsOfCell(mixed);
         for (int l = 0; l < loops.count; ++l)
             for (int side = 0; side < loops.loops[l].size; ++side)
                 loops_.sides.push_back(segmentOf(cell, loops.loops[l], side));
     }
+    findSegmentsOfRuns();
+}
+
+/// What is found next is listed as new segments.
+void CrispBlock::forgetPlaces() {
     for (size_t s = 0; s < segments_.list.size(); ++s)
         segmentAt_[static_cast<size_t>(4 * edgePlace(segments_.list[s].face - first_, segments_.list[s].axis) +
                                        segments_.codes[s])] = 0;
 }
 
-/// Looks at the pieces once at each vertex that ends a segment. Returns at how many.
-uint64_t CrispBlock::evaluateEnds(eval::Workspace& workspace) {
-    samples_.clear(), points_.list.clear();
-    points_.list.reserve(surface_->positions.size());  // so that nodes may point there
-    points_.of.assign(surface_->positions.size(), 0);
-    for (size_t s = 0; s < segments_.list.size(); ++s)
+/// The segments in the faces between runs and the cells before and after them, which have found them.
+void CrispBlock::findSegmentsOfRuns() {
+    segments_.ofRuns.clear();
+    if (!runs_) return;
+    for (const StraightRun& run : runs_->all()) {
+        const int code = std::min(codeInFace(run.edges[0], run.axis), codeInFace(run.edges[1], run.axis));
+        const auto segmentAt = [&](int k) {
+            const Vec3i corner = run.low + stepAlong(run.axis) * k;
+            return segmentAt_[static_cast<size_t>(4 * edgePlace(corner, run.axis) + code)] - 1;
+        };
+        segments_.ofRuns.push_back({segmentAt(0), segmentAt(run.cells)});
+    }
+}
+
+/// Looks at the pieces once at each vertex that ends a segment from `first` on. Returns at how many.
+uint64_t CrispBlock::evaluateEnds(size_t first, eval::Workspace& workspace) {
+    samples_.clear();
+    const size_t known = points_.list.size();
+    for (size_t s = first; s < segments_.list.size(); ++s)
         for (const uint32_t p : segments_.ends[s]) {
             if (points_.of[p] != 0) continue;
             samples_.add(surface_->tapes, segments_.list[s].brick, surface_->positions[p]);
@@ -156,15 +173,15 @@ uint64_t CrispBlock::evaluateEnds(eval::Workspace& workspace) {
             points_.of[p] = static_cast<uint32_t>(points_.list.size());
         }
     samples_.evaluate(workspace);
-    std::vector<float> values(samples_.size());
-    for (size_t i = 0; i < values.size(); ++i) {
-        const PiecePoint found = samples_.point(i, values[i]);
-        points_.list[i].at = found.at, points_.list[i].gradient = found.gradient;
+    points_.values.resize(points_.list.size());
+    for (size_t i = 0; i < samples_.size(); ++i) {
+        const PiecePoint found = samples_.point(i, points_.values[known + i]);
+        points_.list[known + i].at = found.at, points_.list[known + i].gradient = found.gradient;
     }
-    for (size_t s = 0; s < segments_.list.size(); ++s)
+    for (size_t s = first; s < segments_.list.size(); ++s)
         for (size_t end = 0; end < 2; ++end) {
             const size_t i = points_.of[segments_.ends[s][end]] - 1;
-            segments_.list[s].ends[end] = points_.list[i], segments_.list[s].values[end] = values[i];
+            segments_.list[s].ends[end] = points_.list[i], segments_.list[s].values[end] = points_.values[i];
         }
     return samples_.size();
 }
@@ -195,8 +212,8 @@ void CrispBlock::numberBreaks() {
         const FaceSegment& segment = segments_.list[s];
         const Vec3i at = segment.face - first_;
         const auto axis = static_cast<size_t>(segment.axis);
-        const auto key =
-            static_cast<uint32_t>(4 * edgePlace(at - unit(segment.axis) * at[segment.axis], 0) + segments_.codes[s]);
+        const auto key = static_cast<uint32_t>(4 * edgePlace(at - stepAlong(segment.axis) * at[segment.axis], 0) +
+                                               segments_.codes[s]);
         if (at[segment.axis] == 0) {
             low[axis].emplace_back(key, s);
             continue;
@@ -263,6 +280,7 @@ void CrispBlock::splitCells() {
     pieces_.clear();
     size_t side = 0;
     for (const MixedCell& mixed : mixed_) {
+        if (mixed.isInRun) continue;
         const SurfaceCell& cell = surface_->cells[mixed.cell];
         const CellLoops& loops = loopsOfCell(mixed);
         for (int l = 0; l < loops.count; ++l) {
@@ -284,47 +302,79 @@ void CrispBlock::copyTriangles(size_t first, size_t end) {
     }
 }
 
-void CrispBlock::assemble(const std::vector<uint32_t>& ends) {
-    size_t copied = 0, first = 0, normal = 0;
-    for (size_t m = 0; m < mixed_.size(); ++m) {
-        copyTriangles(copied, mixed_[m].firstTriangle);
-        copied = mixed_[m].endTriangle;
+/// The end of a run, once breaks have numbers.
+RunEnd CrispBlock::endOf(size_t run, size_t end) const {
+    const uint32_t b = segments_.list[segments_.ofRuns[run][end]].firstBreak;
+    return {&creases_.breaks()[b], b < segments_.breakVertex.size() ? segments_.breakVertex[b] : 0};
+}
+
+void CrispBlock::assemble() {
+    const PieceTriangles& pieces = split_.pieces;
+    size_t copied = 0, first = 0, normal = 0, next = 0;
+    for (const MixedCell& mixed : mixed_) {
+        copyTriangles(copied, mixed.firstTriangle);
+        copied = mixed.endTriangle;
+        if (mixed.isInRun) continue;
+        const uint32_t end = split_.cellEnds[next++];
         const auto base = static_cast<uint32_t>(out_.triangles.size() - first);
-        for (; first < ends[m]; ++first) {
-            out_.triangles.push_back(split_.triangles[first]);
-            out_.labels.push_back(split_.labels[first]);
-            out_.origins.push_back(split_.origins[first]);
+        for (; first < end; ++first) {
+            out_.triangles.push_back(pieces.triangles[first]);
+            out_.labels.push_back(pieces.labels[first]);
+            out_.origins.push_back(pieces.origins[first]);
         }
-        for (; normal < split_.cornerNormals.size() && split_.cornerNormals[normal].corner < 3 * ends[m]; ++normal)
+        for (; normal < pieces.cornerNormals.size() && pieces.cornerNormals[normal].corner < 3 * end; ++normal)
             out_.cornerNormals.push_back(
-                {split_.cornerNormals[normal].corner + 3 * base, split_.cornerNormals[normal].normal});
+                {pieces.cornerNormals[normal].corner + 3 * base, pieces.cornerNormals[normal].normal});
     }
     copyTriangles(copied, surface_->triangles.size());
-    out_.positions.insert(out_.positions.end(), split_.positions.begin(), split_.positions.end());
-    out_.normals.insert(out_.normals.end(), split_.normals.begin(), split_.normals.end());
-    out_.confined.insert(out_.confined.end(), split_.confined.begin(), split_.confined.end());
+    for (size_t r = 0; r < segments_.ofRuns.size(); ++r) runs_->fill(runs_->all()[r], {endOf(r, 0), endOf(r, 1)}, out_);
+    out_.positions.insert(out_.positions.end(), pieces.positions.begin(), pieces.positions.end());
+    out_.normals.insert(out_.normals.end(), pieces.normals.begin(), pieces.normals.end());
+    out_.confined.insert(out_.confined.end(), pieces.confined.begin(), pieces.confined.end());
     std::sort(out_.confined.begin(), out_.confined.end(),
               [](const ConfinedVertex& a, const ConfinedVertex& b) { return a.vertex < b.vertex; });
+}
+
+/// Finds the breaks on the loops of mixed cells in no run, as far as they aren't known.
+uint64_t CrispBlock::findBreaks(eval::Workspace& workspace) {
+    const size_t first = segments_.list.size();
+    findSegments();
+    const uint64_t evaluations = evaluateEnds(first, workspace);
+    return evaluations + creases_.solve(surface_->tapes, *surface_->grid, workspace, segments_.list, first);
+}
+
+/// Leaves out runs between whose ends the crease isn't straight, or has other pieces beside it. Whether there were any.
+bool CrispBlock::leaveOutBent() {
+    if (!runs_) return false;
+    segments_.breakVertex.clear();
+    return runs_->leaveOut(mixed_, [&](size_t r) {
+        const auto& ends = segments_.ofRuns[r];
+        const bool hasOneEach = segments_.list[ends[0]].breaks == 1 && segments_.list[ends[1]].breaks == 1;
+        return hasOneEach && runs_->isStraight(runs_->all()[r], {endOf(r, 0), endOf(r, 1)});
+    });
 }
 
 uint64_t CrispBlock::run(const BlockSurface& surface, eval::Workspace& workspace) {
     surface_ = &surface;
     first_ = surface.block->index * blockCells;
-    out_.clear(), split_.clear();
+    out_.clear(), split_.pieces.clear();
     for (auto& list : border_.shared) list.clear();
     border_.ghostCount = {};
     findMixedCells();
     if (mixed_.empty()) return 0;
+    if (runs_) runs_->find(surface, mixed_);
     uint64_t evaluations = joinFaces(workspace);
-    findSegments();
-    evaluations += evaluateEnds(workspace);
-    evaluations += creases_.solve(surface.tapes, *surface.grid, workspace, segments_.list);
+    segments_.list.clear(), segments_.ends.clear(), segments_.codes.clear();
+    points_.clear(surface.positions.size());
+    evaluations += findBreaks(workspace);
+    if (leaveOutBent()) evaluations += findBreaks(workspace);
+    forgetPlaces();
     numberBreaks();
     splitCells();
     const auto corners = surface.own + static_cast<uint32_t>(out_.positions.size());
     evaluations += pieces_.placeCorners(surface.tapes, *surface.grid, workspace, corners);
-    pieces_.triangulate(split_, cellEnds_);
-    assemble(cellEnds_);
+    pieces_.triangulate(split_.pieces, split_.cellEnds);
+    assemble();
     return evaluations;
 }
 

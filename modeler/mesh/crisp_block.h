@@ -5,36 +5,22 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "modeler/core/pages.h"
+#include "modeler/mesh/block_surface.h"
 #include "modeler/mesh/cell_pieces.h"
-#include "modeler/mesh/marching_cubes.h"
-#include "modeler/mesh/sample_rows.h"
+#include "modeler/mesh/straight_runs.h"
 
 namespace sgm::mesh {
-
-/// What marching cubes found in a block. Vertices are own ones by number, then ghosts.
-struct BlockSurface {
-    const Block* block;
-    BlockTapes tapes;
-    const Grid* grid;
-    std::span<const SurfaceCell> cells;
-    const uint32_t* number;  ///< of the vertex on an edge, by 3 · corner + axis
-    uint32_t own;            ///< vertices of the block
-    std::span<const Vec3f> positions, normals;
-    std::span<const uint32_t> labels;
-    std::span<const OriginId> origins;
-    std::span<const Triangle> triangles;  ///< cell by cell
-
-    /// A corner's place in the lists.
-    uint32_t placeOf(uint32_t corner) const { return corner & ghostBit ? own + (corner & ~ghostBit) : corner; }
-};
 
 /// One worker's, reused from block to block.
 class CrispBlock {
 public:
+    /// `mergesCells`: see PolygonizeOptions.
+    explicit CrispBlock(bool mergesCells) : runs_(mergesCells ? std::make_unique<StraightRuns>() : nullptr) {}
     /// Finds creases and splits cells. Returns how often the field was evaluated.
     uint64_t run(const BlockSurface& surface, eval::Workspace& workspace);
     /// Whether anything was split. What follows is empty else.
@@ -50,22 +36,23 @@ public:
     uint32_t ghosts(int axis) const { return border_.ghostCount[static_cast<size_t>(axis)]; }
 
 private:
-    struct MixedCell {
-        uint32_t cell, firstTriangle, endTriangle;
-        int joined = 0;  ///< see loopsOf
-    };
     void findMixedCells();
     uint64_t joinFaces(eval::Workspace& workspace);
     const CellLoops& loopsOfCell(const MixedCell& mixed);
-    uint32_t vertexAt(Vec3i low, int edge) const;
+    uint32_t placeAt(Vec3i low, int edge) const;
     void findSegments();
-    uint64_t evaluateEnds(eval::Workspace& workspace);
+    void findSegmentsOfRuns();
+    void forgetPlaces();
+    uint64_t findBreaks(eval::Workspace& workspace);
+    bool leaveOutBent();
+    RunEnd endOf(size_t run, size_t end) const;
+    uint64_t evaluateEnds(size_t first, eval::Workspace& workspace);
     const PiecePoint& pointAt(uint32_t place);
     int32_t segmentOf(const SurfaceCell& cell, const CellLoop& loop, int side);
     void numberBreaks();
     void splitCells();
     void addNodes(const SurfaceCell& cell, const CellLoop& loop, size_t& side);
-    void assemble(const std::vector<uint32_t>& ends);
+    void assemble();
     void copyTriangles(size_t first, size_t end);
 
     static constexpr size_t edgePlaces = size_t{3} * cornersPerBlock;
@@ -79,12 +66,20 @@ private:
         std::vector<std::array<uint32_t, 2>> ends;  ///< places of their vertices
         std::vector<uint8_t> codes;                 ///< their order in a face
         std::vector<uint32_t> breakVertex;
+        std::vector<std::array<uint32_t, 2>> ofRuns;  ///< at their ends
     };
     Segments segments_;
     /// Points of vertices of mixed cells.
     struct Points {
         std::vector<uint32_t> of;  ///< by place: 1 + number of the point there
         std::vector<PiecePoint> list;
+        std::vector<float> values;  ///< of the field there, of those that end segments
+
+        void clear(size_t places) {
+            list.clear(), values.clear();
+            list.reserve(places);  // so that nodes may point there
+            of.assign(places, 0);
+        }
     };
     Points points_;
     PieceSamples samples_;
@@ -99,8 +94,14 @@ private:
     FaceCreases creases_;
     CellPieces pieces_;
     std::vector<LoopNode> nodes_;
-    PieceTriangles split_, out_;
-    std::vector<uint32_t> cellEnds_;
+    /// What mixed cells are split into, those in no run.
+    struct Split {
+        PieceTriangles pieces;
+        std::vector<uint32_t> cellEnds;
+    };
+    Split split_;
+    std::unique_ptr<StraightRuns> runs_;  ///< null where cells stay as they are
+    PieceTriangles out_;
     /// Vertices on the block's sides, by axis.
     struct Sides {
         std::array<std::vector<uint32_t>, 3> shared;

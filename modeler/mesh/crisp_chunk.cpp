@@ -50,28 +50,44 @@ void BlockMesher::splitAtCreases(const Block& block, Chunk& chunk) {
         const int brick = std::countr_zero(rest);
         tapes[static_cast<size_t>(brick)] = {&samples_.tapeOf(brick), samples_.boxOf(brick)};
     }
-    const BlockSurface surface{&block,
-                               {&block.tape, tapes},
-                               &grid_,
-                               {cells_.list.data(), cells_.count},
-                               vertices_.number.data(),
-                               vertices_.count,
-                               vertices_.positions,
-                               vertices_.normals,
-                               vertices_.labels,
-                               vertices_.origins,
-                               chunk.triangles};
+    BlockSurface surface{&block,
+                         {&block.tape, tapes},
+                         &grid_,
+                         {cells_.list.data(), cells_.count},
+                         vertices_.number.data(),
+                         vertices_.count,
+                         vertices_.positions,
+                         vertices_.normals,
+                         vertices_.labels,
+                         vertices_.origins,
+                         chunk.triangles};
+    if (cells_.flat) {
+        cells_.flat->takeOut(surface, cells_.list, cells_.count, chunk.triangles, chunk.origins);
+        surface.cells = {cells_.list.data(), cells_.count}, surface.triangles = chunk.triangles;
+    }
     {
         const AddTime evaluating(fieldTime_);
         counts_.refinementEvaluations += crisp_->run(surface, workspace_);
     }
-    const PieceTriangles& split = crisp_->triangles();
-    if (!crisp_->hasCreases()) {
-        chunk.labels.resize(cells_.triangles);
-        for (size_t t = 0; t < cells_.triangles; ++t)
+    if (crisp_->hasCreases()) {
+        takeSplit(chunk);
+    } else {
+        chunk.labels.resize(chunk.triangles.size());
+        for (size_t t = 0; t < chunk.triangles.size(); ++t)
             chunk.labels[t] = vertices_.labels[surface.placeOf(chunk.triangles[t].x)];
-        return;
     }
+    if (!cells_.flat) return;
+    for (const Triangle& t : cells_.flat->fans()) {
+        const uint32_t place = surface.placeOf(t.x);
+        chunk.triangles.push_back(t);
+        chunk.labels.push_back(vertices_.labels[place]);
+        chunk.origins.push_back(vertices_.origins[place]);
+    }
+}
+
+/// Replaces what marching cubes has made by what is split at creases.
+void BlockMesher::takeSplit(Chunk& chunk) const {
+    const PieceTriangles& split = crisp_->triangles();
     crisp_->takeNormalsOfPieces(chunk.normals);
     chunk.triangles.assign(split.triangles.begin(), split.triangles.end());
     chunk.labels.assign(split.labels.begin(), split.labels.end());

@@ -63,18 +63,19 @@ bool isZigzag(const FaceSegment& segment, std::span<const Break> breaks) {
 }  // namespace
 
 uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace,
-                            std::vector<FaceSegment>& segments) {
+                            std::vector<FaceSegment>& segments, size_t first) {
     grid_ = &grid, tapes_ = tapes;
     limit_ = surfaceReach(*tapes.whole, grid);
-    gaps_.clear(), open_.clear(), breaks_.clear();
-    for (uint32_t s = 0; s < segments.size(); ++s) {
+    gaps_.clear(), open_.clear();
+    if (first == 0) breaks_.clear();
+    for (auto s = static_cast<uint32_t>(first); s < segments.size(); ++s) {
         Gap gap;
         gap.segment = s;
         gap.a = segments[s].ends[0], gap.b = segments[s].ends[1];
         gap.nearA.value = segments[s].values[0], gap.nearB.value = segments[s].values[1];
         takeEnds(segments[s], gap, gap.a, gap.b);
+        open_.push_back(static_cast<uint32_t>(gaps_.size()));
         gaps_.push_back(gap);
-        open_.push_back(s);
     }
     uint64_t evaluations = 0;
     while (!open_.empty()) {
@@ -93,7 +94,7 @@ uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Wor
         open_.swap(next_);
     }
     evaluations += confirmCrossings(segments, workspace);
-    separate(segments);
+    separate(segments, first);
     return evaluations;
 }
 
@@ -348,12 +349,13 @@ Vec3f FaceCreases::inFace(const FaceSegment& segment, Vec3f p) const {
 
 /// Pieces between breaks that coincide go; where a segment's way crosses itself, or another segment shares its face,
 /// the breaks stay on the line between its ends.
-void FaceCreases::separate(std::vector<FaceSegment>& segments) {
-    for (uint32_t s = 0; s < segments.size(); ++s) {
+void FaceCreases::separate(std::vector<FaceSegment>& segments, size_t first) {
+    for (size_t s = first; s < segments.size(); ++s) {
         chain_.clear();
-        for (int32_t g = static_cast<int32_t>(s); g >= 0; g = gaps_[static_cast<size_t>(g)].next) {
+        const auto begin = static_cast<int32_t>(s - first);  // the gaps of the segments came first, in their order
+        for (int32_t g = begin; g >= 0; g = gaps_[static_cast<size_t>(g)].next) {
             const Gap& gap = gaps_[static_cast<size_t>(g)];
-            if (chain_.empty() && g == static_cast<int32_t>(s)) segments[s].ends[0].gradient = gap.a.gradient;
+            if (chain_.empty() && g == begin) segments[s].ends[0].gradient = gap.a.gradient;
             segments[s].ends[1].gradient = gap.b.gradient;
             const bool crosses = gap.leaves || mayLieAt(segments[s], gap.crossing);
             Break next{gap.at, crosses ? gap.crossing : gap.at, {onSurface(gap.nearA), onSurface(gap.nearB)}};

@@ -33,9 +33,10 @@ struct FaceSegment {
 /// One worker's solver, reused from block to block.
 class FaceCreases {
 public:
-    /// Finds the breaks of all segments, listed in their order. Returns how often the field was evaluated.
+    /// Finds the breaks of the segments from `first` on, listed in their order, after those found for the others
+    /// before; `first` 0: anew. Returns how often the field was evaluated.
     uint64_t solve(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace,
-                   std::vector<FaceSegment>& segments);
+                   std::vector<FaceSegment>& segments, size_t first);
     const std::vector<Break>& breaks() const { return breaks_; }
 
 private:
@@ -86,7 +87,7 @@ private:
     static Vec3f onLine(const Gap& gap, Vec3f p);
     bool mayLieAt(const FaceSegment& segment, Vec3f p) const;
     void arrange(const FaceSegment& segment);
-    void separate(std::vector<FaceSegment>& segments);
+    void separate(std::vector<FaceSegment>& segments, size_t first);
 
     bool isKnown(float value) const { return value >= -limit_ && value <= limit_; }
 

@@ -28,6 +28,10 @@ struct PolygonizeOptions {
     bool halvesAll = true;
     /// So many triangles, or four times those that it has, a mesh may come to have by that.
     size_t halvedTriangles = 8'000'000;
+    /// Of Crisp, for a mesh that is simplified next, which takes less time then: flat cells become fans (flat_cells.h),
+    /// cells along straight creases strips (straight_runs.h), and vertices amid them stay without triangles. The
+    /// surface is the same, but for what is thinner than a cell beside such a crease.
+    bool mergesCells = false;
     int threads = 0;      ///< 0 = all
     int refineSteps = 3;  ///< evaluations a vertex may take after linear interpolation; 0 = the paper's interpolation
     bool positionsOnly = false;  ///< of Cubes: the shape alone, which is the same: chunks without normals and origins

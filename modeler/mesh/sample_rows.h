@@ -17,6 +17,8 @@ inline constexpr int brickCorners = brickCells + 1;
 /// Corners of a block, and their numbers, x fastest.
 inline constexpr int cornersPerBlock = blockCorners * blockCorners * blockCorners;
 constexpr int cornerNumber(int i, int j, int k) { return i + blockCorners * (j + blockCorners * k); }
+/// To the next corner along an axis.
+constexpr Vec3i stepAlong(int axis) { return {axis == 0 ? 1 : 0, axis == 1 ? 1 : 0, axis == 2 ? 1 : 0}; }
 constexpr Vec3i cornerIndices(int number) {
     return {number % blockCorners, number / blockCorners % blockCorners, number / (blockCorners * blockCorners)};
 }
