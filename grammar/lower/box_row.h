@@ -6,6 +6,7 @@
 #pragma once
 
 #include "grammar/derive/derive.h"
+#include "grammar/lower/joined_boxes.h"
 #include "modeler/core/pages.h"
 #include "modeler/core/parallel.h"
 #include "modeler/field/combine.h"
@@ -19,6 +20,9 @@ public:
 
     /// Whether the solid is the box of its scope, whatever its numbers.
     static bool takes(const derive::SolidValue& solid);
+    /// Whether it is a block over all of its scope, which is a box too.
+    static bool isWholeBlock(const derive::SolidValue& solid, const derive::Scope& scope,
+                             const derive::Footprints& footprints);
     bool empty() const { return shapes_.empty(); }
     std::span<const derive::ShapeId> shapes() const { return shapes_; }
     /// Whether a shape that has been turned with `turn` may join: the row isn't full and has that rotation.
@@ -32,15 +36,25 @@ public:
     template <class Beside>
     void place(PageVector<field::Owned>& terms, OriginId firstOwner, Beside&& beside) {
         const field::Point p = position();
-        const field::NodeId first = graph_.addBoxes(shapes_.size());
-        const size_t before = terms.size(), chunks = (shapes_.size() + chunk - 1) / chunk;
-        terms.resize(before + shapes_.size());
-        parallelFor(chunks + 1, shapes_.size() > chunk ? threads_ : 1, nullptr, [&](size_t task, int) {
+        const size_t count = joined_.empty() ? shapes_.size() : joined_.size();
+        const field::NodeId first = graph_.addBoxes(count);
+        const size_t before = terms.size(), chunks = (count + chunk - 1) / chunk;
+        terms.resize(before + count);
+        parallelFor(chunks + 1, count > chunk ? threads_ : 1, nullptr, [&](size_t task, int) {
             if (task == 0) return beside();
-            for (size_t i = (task - 1) * chunk; i < std::min(task * chunk, shapes_.size()); ++i)
+            for (size_t i = (task - 1) * chunk; i < std::min(task * chunk, count); ++i)
                 terms[before + i] = make(i, first, p, firstOwner);
         });
-        shapes_.clear();
+        shapes_.clear(), joined_.clear();
+    }
+    /// Joins the row's boxes of one material, which `materialOf(shape)` tells; the first one of those joined owns all.
+    template <class MaterialOf>
+    void join(MaterialOf&& materialOf) {
+        std::vector<derive::Scope> scopes;
+        std::vector<uint32_t> materials;
+        for (const derive::ShapeId id : shapes_)
+            scopes.push_back(tree_.shapes.scopeOf(id)), materials.push_back(materialOf(id));
+        joined_ = joinBoxes(scopes, materials);
     }
 
 private:
@@ -53,6 +67,7 @@ private:
     field::Graph& graph_;
     const int threads_;
     PageVector<derive::ShapeId> shapes_;
+    std::vector<JoinedBox> joined_;             ///< of the shapes; empty where they stay apart
     derive::ShapeId turn_ = derive::none;       ///< of the row: the shape from which on nothing is turned
     derive::ShapeId knownTurn_ = derive::none;  ///< of `position_`
     field::Point position_;

@@ -181,6 +181,7 @@ void Lowering::placeBoxes() {
     if (row_.empty()) return;
     PageVector<Owned>& terms = open_.back().terms;
     if (terms.empty() && open_.back().shape == 0) terms.reserve(model_.shapeOf.capacity());
+    if (options_.joinsBoxes) row_.join([this](ShapeId id) { return materials_.of(id); });
     row_.place(terms, static_cast<OriginId>(model_.provenance.parts.size()), [this] {
         for (const ShapeId id : row_.shapes()) addPart(id);
     });
@@ -196,7 +197,10 @@ void Lowering::enter(ShapeId id) {
     if (!solid) return;
     Content& content = open_.back();
     // A shape that is turned itself has its rotation's slots under its own key: a row has none but the boxes' there.
-    const bool isBox = !again_ && turnedAt_[id] != id && BoxRow::takes(*solid);
+    const bool isBox =
+        !again_ && turnedAt_[id] != id &&
+        (BoxRow::takes(*solid) ||
+         (options_.joinsBoxes && BoxRow::isWholeBlock(*solid, tree_.shapes.scopeOf(id), tree_.footprints)));
     if (!isBox || !row_.hasPlaceFor(turnedAt_[id])) placeBoxes();
     if (isBox) {
         if (content.blend_m > 0 || !content.cuts.terms.empty()) flush(content);
@@ -354,9 +358,10 @@ void Lowering::mergeMaterials() {
     for (Part& part : model_.provenance.parts) part.material = numbers[part.material];
 }
 
-Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress, int threads) {
+Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress, int threads,
+                                     bool joinsBoxes) {
     auto model = std::make_unique<Model>();
-    Lowering lowering(derivation, *model, {.keeps = false, .threads = threads});
+    Lowering lowering(derivation, *model, {.keeps = false, .joinsBoxes = joinsBoxes, .threads = threads});
     if (const Status done = lowering.run(progress); !done.ok()) return done.error();
     return model;
 }

@@ -48,8 +48,9 @@ struct Content : Parts {
 class Lowering {
 public:
     struct Options {
-        bool keeps = false;  ///< `replay` may follow
-        int threads = 1;     ///< 0: all that the machine has
+        bool keeps = false;       ///< `replay` may follow
+        bool joinsBoxes = false;  ///< see lower()
+        int threads = 1;          ///< 0: all that the machine has
     };
     Lowering(const derive::Derivation& d, Model& model, Options options)
         : d_(d),

@@ -80,13 +80,15 @@ Status BakedObjects::makeMeshes(uint32_t object, Context& context) {
     request.meshing.halvings = 0;  // what is thinner than the cells isn't worth its bytes in a town
     request.meshing.mergesCells = true;
     request.cell_m = cell_m_;
-    const bool isInspected = inspected_.contains(object);
-    auto meshed = meshObject(*placed.derivation, request, context, isInspected ? objects_.nameOf(placed) : "");
-    if (!meshed.ok()) return meshed.error();
-    if (isInspected) {
+    if (inspected_.contains(object)) {  // by its own parts
+        auto inspected = meshObject(*placed.derivation, request, context, objects_.nameOf(placed));
+        if (!inspected.ok()) return inspected.error();
         const std::lock_guard lock(*mutex_);
-        warnings_[object] = std::move(meshed->lacks);
+        warnings_[object] = std::move(inspected->lacks);
     }
+    request.joinsBoxes = true;
+    auto meshed = meshObject(*placed.derivation, request, context, "");
+    if (!meshed.ok()) return meshed.error();
     const mesh::PackedMesh mesh = mesh::pack(meshed->mesh);
     meshed->mesh = {};
     tiles::LibraryObject made;

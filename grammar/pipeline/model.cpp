@@ -117,11 +117,12 @@ std::string sketchNote(const derive::Derivation& derivation) {
         derivation.masses);
 }
 
-Result<Model> makeModel(derive::Derivation derivation, Context& context, Objects objects,
-                        const derive::Budget& budget) {
+Result<Model> makeModel(derive::Derivation derivation, Context& context, Objects objects, const derive::Budget& budget,
+                        bool joinsBoxes) {
     if (objects != Objects::Apart)
         if (const Status s = graftObjects(derivation, objects, budget, context); !s.ok()) return s.error();
-    auto lowered = context.timed("lower", [&] { return lower::lower(derivation, context.progress, context.threads); });
+    auto lowered =
+        context.timed("lower", [&] { return lower::lower(derivation, context.progress, context.threads, joinsBoxes); });
     if (!lowered.ok()) return lowered.error();
     const lower::Model& model = **lowered;
     eval::Tape tape =

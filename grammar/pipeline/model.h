@@ -59,8 +59,8 @@ Result<Model> makeModel(std::shared_ptr<const rules::Grammar> grammar, const der
 std::shared_ptr<const lower::Model> withoutGraph(const lower::Model& model);
 /// What is to be said of a model whose objects are sketched; "" where none are.
 std::string sketchNote(const derive::Derivation& derivation);
-/// The same from a derivation on, within a budget for what is grafted.
+/// The same from a derivation on, within a budget for what is grafted. `joinsBoxes`: see lower::lower.
 Result<Model> makeModel(derive::Derivation derivation, Context& context, Objects objects = Objects::Grafted,
-                        const derive::Budget& budget = {});
+                        const derive::Budget& budget = {}, bool joinsBoxes = false);
 
 }  // namespace sgm::pipeline

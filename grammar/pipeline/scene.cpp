@@ -152,7 +152,7 @@ private:
 
 Result<ObjectMesh> meshObject(derive::Derivation derivation, const SceneRequest& request, Context& context,
                               const std::string& name) {
-    auto model = makeModel(std::move(derivation), context, Objects::Apart);
+    auto model = makeModel(std::move(derivation), context, Objects::Apart, {}, request.joinsBoxes);
     if (!model.ok()) return model.error();
     const mesh::Grid grid = gridOver(*model, {request.resolution, request.cell_m}, request.meshing.surface);
     const float cell_m = grid.cell_m;

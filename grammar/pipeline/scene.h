@@ -18,6 +18,7 @@ struct SceneRequest {
     double cell_m = 0;     ///< of every object, metres; > 0 wins over the resolution
     mesh::PolygonizeOptions meshing = {};
     MeshEdits edits = {};
+    bool joinsBoxes = false;      ///< of each object, see lower::lower: what is missing isn't told by parts then
     bool seeksThinParts = false;  ///< look at the first object of each start for parts that its cells lack
     derive::Budget budget = {};  ///< of the derivation of each object; its shapes limit the places of the model as well
 };

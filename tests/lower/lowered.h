@@ -12,8 +12,9 @@ struct Lowered {
     derive::Derivation derivation;
     std::unique_ptr<lower::Model> model;
 
-    explicit Lowered(const std::string& text, derive::Options options = {}) : derivation(derived(text, options)) {
-        auto result = lower::lower(derivation, nullptr);
+    explicit Lowered(const std::string& text, derive::Options options = {}, bool joinsBoxes = false)
+        : derivation(derived(text, options)) {
+        auto result = lower::lower(derivation, nullptr, 1, joinsBoxes);
         if (!result.ok()) {
             ADD_FAILURE() << result.error().message;
             return;
