@@ -24,8 +24,8 @@ void layTextures(const derive::Derivation& derivation, Model& model);
 /// Fails when the solid is unbounded, or when nothing solid is left of a derivation that holds no objects of their own:
 /// they aren't part of the field (derive::graft makes them so).
 /// On `threads` threads, 0 for all that the machine has, of which nothing shows in the model. `joinsBoxes`: boxes of
-/// one material that stand side by side in a sum become one, which has the origin of the first: for meshes of which
-/// nobody asks what each part is.
+/// one material that stand side by side in a sum become one, which has the origin of the first: for meshes that
+/// need no origin a part.
 Result<std::unique_ptr<Model>> lower(const derive::Derivation& derivation, Progress* progress, int threads = 0,
                                      bool joinsBoxes = false);
 

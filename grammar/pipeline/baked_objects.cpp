@@ -78,15 +78,14 @@ Status BakedObjects::makeMeshes(uint32_t object, Context& context) {
     SceneRequest request;
     request.meshing.surface = mesh::Surface::Crisp;
     request.meshing.halvings = 0;  // what is thinner than the cells isn't worth its bytes in a town
-    request.meshing.mergesCells = true;
     request.cell_m = cell_m_;
-    if (inspected_.contains(object)) {  // by its own parts
+    if (inspected_.contains(object)) {  // by its own parts, and by triangles that are hardly larger than a cell
         auto inspected = meshObject(*placed.derivation, request, context, objects_.nameOf(placed));
         if (!inspected.ok()) return inspected.error();
         const std::lock_guard lock(*mutex_);
         warnings_[object] = std::move(inspected->lacks);
     }
-    request.joinsBoxes = true;
+    request.joinsBoxes = request.meshing.mergesCells = true;
     auto meshed = meshObject(*placed.derivation, request, context, "");
     if (!meshed.ok()) return meshed.error();
     const mesh::PackedMesh mesh = mesh::pack(meshed->mesh);

@@ -305,7 +305,7 @@ void CrispBlock::copyTriangles(size_t first, size_t end) {
 /// The end of a run, once breaks have numbers.
 RunEnd CrispBlock::endOf(size_t run, size_t end) const {
     const uint32_t b = segments_.list[segments_.ofRuns[run][end]].firstBreak;
-    return {&creases_.breaks()[b], b < segments_.breakVertex.size() ? segments_.breakVertex[b] : 0};
+    return {&creases_.breaks()[b], segments_.breakVertex[b]};
 }
 
 void CrispBlock::assemble() {
@@ -346,11 +346,14 @@ uint64_t CrispBlock::findBreaks(eval::Workspace& workspace) {
 /// Leaves out runs between whose ends the crease isn't straight, or has other pieces beside it. Whether there were any.
 bool CrispBlock::leaveOutBent() {
     if (!runs_) return false;
-    segments_.breakVertex.clear();
     return runs_->leaveOut(mixed_, [&](size_t r) {
-        const auto& ends = segments_.ofRuns[r];
-        const bool hasOneEach = segments_.list[ends[0]].breaks == 1 && segments_.list[ends[1]].breaks == 1;
-        return hasOneEach && runs_->isStraight(runs_->all()[r], {endOf(r, 0), endOf(r, 1)});
+        std::array<const Break*, 2> ends{};
+        for (size_t end = 0; end < 2; ++end) {
+            const FaceSegment& segment = segments_.list[segments_.ofRuns[r][end]];
+            if (segment.breaks != 1) return false;
+            ends[end] = &creases_.breaks()[segment.firstBreak];
+        }
+        return runs_->isStraight(runs_->all()[r], ends);
     });
 }
 

@@ -28,22 +28,22 @@ bool FlatCells::isFlat(const Cell& cell, Vec3i low) const {
 }
 
 /// The flat cell at a corner, or null.
-FlatCells::Cell* FlatCells::cellAt(Vec3i low) {
+const FlatCells::Cell* FlatCells::cellAt(Vec3i low) const {
     if (maxComponent(low) >= blockCells) return nullptr;
     const uint32_t number = flatAt_[static_cast<size_t>(cornerNumber(low.x, low.y, low.z))];
     return number == 0 ? nullptr : &flat_[number - 1];
 }
 
 /// Whether there is a flat cell at a corner that continues another one's plane and piece, and that no fan has yet.
-bool FlatCells::isContinued(const Cell& by, Vec3i low) {
+bool FlatCells::isContinued(const Cell& by, Vec3i low) const {
     const Cell* const next = cellAt(low);
-    return next && !next->isTaken && surface_->cells[next->cell].inside == surface_->cells[by.cell].inside &&
+    return next && !isTaken_[next->cell] && surface_->cells[next->cell].inside == surface_->cells[by.cell].inside &&
            surface_->labels[next->first] == surface_->labels[by.first] &&
            surface_->positions[next->first][by.axis] == surface_->positions[by.first][by.axis];
 }
 
 /// As far as it reaches along one axis of the plane, and then as far as such rows do along the other.
-FlatCells::Rectangle FlatCells::largestFrom(const Cell& cell) {
+FlatCells::Rectangle FlatCells::largestFrom(const Cell& cell) const {
     Rectangle cells{cornerIndices(surface_->cells[cell.cell].corner), stepAlong((cell.axis + 1) % 3),
                     stepAlong((cell.axis + 2) % 3), 1, 1};
     while (isContinued(cell, cells.low + cells.u * cells.across)) ++cells.across;
@@ -74,7 +74,7 @@ void FlatCells::listFlat() {
         const int axis = axisAcross(at.inside);
         if (axis < 0) continue;
         const Vec3i low = cornerIndices(at.corner);
-        const Cell cell{c, surface_->placeOf(surface_->vertexAt(low, axis)), axis, false};
+        const Cell cell{c, surface_->placeOf(surface_->vertexAt(low, axis)), axis};
         if (!isFlat(cell, low)) continue;
         flat_.push_back(cell);
         flatAt_[at.corner] = static_cast<uint32_t>(flat_.size());
@@ -85,15 +85,12 @@ void FlatCells::makeFans() {
     fans_.clear();
     isTaken_.assign(surface_->cells.size(), false);
     for (const Cell& cell : flat_) {
-        if (cell.isTaken) continue;
+        if (isTaken_[cell.cell]) continue;
         const Rectangle cells = largestFrom(cell);
         if (cells.across * cells.up <= cells.across + cells.up) continue;
         addFan(cell, cells);
         for (int j = 0; j < cells.up; ++j)
-            for (int i = 0; i < cells.across; ++i) {
-                Cell* const taken = cellAt(cells.low + cells.u * i + cells.v * j);
-                taken->isTaken = true, isTaken_[taken->cell] = true;
-            }
+            for (int i = 0; i < cells.across; ++i) isTaken_[cellAt(cells.low + cells.u * i + cells.v * j)->cell] = true;
     }
     for (const Cell& cell : flat_) flatAt_[surface_->cells[cell.cell].corner] = 0;
 }

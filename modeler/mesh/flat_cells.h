@@ -27,7 +27,6 @@ private:
         uint32_t cell;   ///< of the surface
         uint32_t first;  ///< place of the vertex on the edge at its low corner
         int axis;        ///< across its plane
-        bool isTaken;
     };
     /// Cells along the two axes of a plane.
     struct Rectangle {
@@ -36,9 +35,9 @@ private:
     };
 
     bool isFlat(const Cell& cell, Vec3i low) const;
-    Cell* cellAt(Vec3i low);
-    bool isContinued(const Cell& by, Vec3i low);
-    Rectangle largestFrom(const Cell& cell);
+    const Cell* cellAt(Vec3i low) const;
+    bool isContinued(const Cell& by, Vec3i low) const;
+    Rectangle largestFrom(const Cell& cell) const;
     void addFan(const Cell& cell, const Rectangle& cells);
     void listFlat();
     void makeFans();

@@ -43,20 +43,23 @@ StraightRuns::Way StraightRuns::wayThrough(const SurfaceCell& cell) const {
     return {};
 }
 
+/// 1 + the place of the mixed cell at `low` where one is alike there, beside another along its axis; else 0.
+uint32_t StraightRuns::neighbourOf(const std::vector<MixedCell>& mixed, uint32_t of, Vec3i low) const {
+    const int axis = ways_[of].axis;
+    if (low[axis] < 0 || low[axis] >= blockCells) return 0;
+    const uint32_t number = mixedAt_[static_cast<size_t>(cornerNumber(low.x, low.y, low.z))];
+    const bool isAlike = number != 0 && ways_[number - 1].axis == axis &&
+                         surface_->cells[mixed[number - 1].cell].inside == surface_->cells[mixed[of].cell].inside;
+    return isAlike ? number : 0;
+}
+
 /// The run that begins with a mixed cell, but for its first and last one.
 void StraightRuns::addRun(std::vector<MixedCell>& mixed, uint32_t first) {
-    const SurfaceCell& cell = surface_->cells[mixed[first].cell];
     const Way& way = ways_[first];
-    const Vec3i step = stepAlong(way.axis), low = cornerIndices(cell.corner);
+    const Vec3i step = stepAlong(way.axis), low = cornerIndices(surface_->cells[mixed[first].cell].corner);
     StraightRun run{low + step, way.axis, 0, way.edges, static_cast<uint32_t>(members_.size())};
-    const auto continuation = [&](Vec3i at) -> uint32_t {
-        const uint32_t number =
-            at[way.axis] < blockCells ? mixedAt_[static_cast<size_t>(cornerNumber(at.x, at.y, at.z))] : 0;
-        if (number == 0 || ways_[number - 1].axis != way.axis) return 0;
-        return surface_->cells[mixed[number - 1].cell].inside == cell.inside ? number : 0;
-    };
     Vec3i at = run.low;
-    for (uint32_t number; (number = continuation(at)) != 0; at = at + step) members_.push_back(number - 1);
+    for (uint32_t number; (number = neighbourOf(mixed, first, at)) != 0; at = at + step) members_.push_back(number - 1);
     const auto length = static_cast<int>(members_.size() - run.firstMember) + 1;
     if (length < leastCells) {
         members_.resize(run.firstMember);
@@ -78,15 +81,8 @@ void StraightRuns::find(const BlockSurface& surface, std::vector<MixedCell>& mix
     }
     for (uint32_t m = 0; m < mixed.size(); ++m) {
         if (ways_[m].axis < 0) continue;
-        const SurfaceCell& cell = surface.cells[mixed[m].cell];
-        const Vec3i before = cornerIndices(cell.corner) - stepAlong(ways_[m].axis);
-        if (before[ways_[m].axis] >= 0) {
-            const uint32_t number = mixedAt_[static_cast<size_t>(cornerNumber(before.x, before.y, before.z))];
-            if (number != 0 && ways_[number - 1].axis == ways_[m].axis &&
-                surface.cells[mixed[number - 1].cell].inside == cell.inside)
-                continue;  // it belongs to the run of that one
-        }
-        addRun(mixed, m);
+        const Vec3i low = cornerIndices(surface.cells[mixed[m].cell].corner);
+        if (neighbourOf(mixed, m, low - stepAlong(ways_[m].axis)) == 0) addRun(mixed, m);
     }
     for (const MixedCell& m : mixed) mixedAt_[surface.cells[m.cell].corner] = 0;
 }
@@ -96,21 +92,21 @@ uint32_t StraightRuns::vertexOf(const StraightRun& run, size_t piece, int k) con
     return surface_->vertexOf(run.low + stepAlong(run.axis) * k, run.edges[piece]);
 }
 
-bool StraightRuns::isStraight(const StraightRun& run, const std::array<RunEnd, 2>& ends) const {
-    const Vec3d apart = (ends[1].at->at - ends[0].at->at).as<double>();
+bool StraightRuns::isStraight(const StraightRun& run, const std::array<const Break*, 2>& ends) const {
+    const Vec3d apart = (ends[1]->at - ends[0]->at).as<double>();
     const double most = straightShare * static_cast<double>(surface_->grid->cell_m);
     if (std::abs(apart[(run.axis + 1) % 3]) > most || std::abs(apart[(run.axis + 2) % 3]) > most) return false;
-    for (const RunEnd& end : ends)
-        if (end.at->at != end.at->crossing) return false;
+    for (const Break* const end : ends)
+        if (end->at != end->crossing) return false;
     for (size_t piece = 0; piece < 2; ++piece) {
         const uint32_t low = surface_->placeOf(vertexOf(run, piece, 0)),
                        high = surface_->placeOf(vertexOf(run, piece, run.cells));
         const Vec3d from = surface_->positions[low].as<double>();
         const Vec3d way = (surface_->positions[high].as<double>() - from) * (piece == 0 ? 1.0 : -1.0);
-        for (const RunEnd& end : ends) {
-            const PiecePoint& side = sideOn(*end.at, surface_->labels[low]);
+        for (const Break* const end : ends) {
+            const PiecePoint& side = sideOn(*end, surface_->labels[low]);
             if (side.label != surface_->labels[low]) return false;
-            if (!(dot(cross(way, end.at->at.as<double>() - from), side.gradient.as<double>()) > 0)) return false;
+            if (!(dot(cross(way, end->at.as<double>() - from), side.gradient.as<double>()) > 0)) return false;
         }
     }
     return true;

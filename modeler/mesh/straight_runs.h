@@ -42,7 +42,7 @@ public:
     void find(const BlockSurface& surface, std::vector<MixedCell>& mixed);
     const std::vector<StraightRun>& all() const { return runs_; }
     /// Whether the breaks at the ends of a run are one straight crease or border between its two pieces.
-    bool isStraight(const StraightRun& run, const std::array<RunEnd, 2>& ends) const;
+    bool isStraight(const StraightRun& run, const std::array<const Break*, 2>& ends) const;
     /// Leaves out the runs that keep(number) is false for: their cells are no longer marked. Whether there were any.
     template <class Keep>
     bool leaveOut(std::vector<MixedCell>& mixed, Keep&& keep) {
@@ -70,6 +70,7 @@ private:
 
     uint32_t placeAt(Vec3i low, int edge) const;
     Way wayThrough(const SurfaceCell& cell) const;
+    uint32_t neighbourOf(const std::vector<MixedCell>& mixed, uint32_t of, Vec3i low) const;
     void addRun(std::vector<MixedCell>& mixed, uint32_t first);
     uint32_t vertexOf(const StraightRun& run, size_t piece, int k) const;
 

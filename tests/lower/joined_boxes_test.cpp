@@ -55,7 +55,7 @@ TEST(JoinedBoxes, OnesThatOnlyTouchOrOverlapStay) {
     for (size_t i = 0; i < parts.size(); ++i) EXPECT_EQ(joined[i].scope, parts[i]) << i;
 }
 
-/// A house with windows, a door cut out of a wall, a blended step and a tower of cubes.
+/// A house with windows, an opening cut out of a tower, a blended step.
 constexpr const char* house = R"(grammar 2
 terminal pane color #88aacc
 start House -> size (8m, 6m, 5m) faces .3m { side: Wall | rest: block } + Tower

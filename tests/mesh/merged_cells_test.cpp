@@ -1,11 +1,9 @@
 // Flat cells as fans and cells along straight creases as strips: the surface stays the same.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "modeler/field/solids.h"
 #include "modeler/mesh/simplify.h"
 #include "modeler/mesh/validate.h"
+#include "tests/mesh/blocks.h"
 #include "tests/mesh/mesh_bytes.h"
 #include "tests/mesh/scenes.h"
 
@@ -13,18 +11,6 @@ namespace sgm::mesh {
 namespace {
 
 const PolygonizeOptions whole{.surface = Surface::Crisp}, merging{.surface = Surface::Crisp, .mergesCells = true};
-
-field::Field block(field::Graph& g, Vec3f centre, Vec3f half, double degrees = 0) {
-    const field::Point p = shifted(g, centre);
-    const auto c = static_cast<float>(std::cos(degrees * 3.14159265358979 / 180)),
-               d = static_cast<float>(std::sin(degrees * 3.14159265358979 / 180));
-    const field::Point turned{p.x * g.literal(c) + p.z * g.literal(d), p.y, p.z * g.literal(c) - p.x * g.literal(d)};
-    const Vec3f reach = degrees == 0 ? half : Vec3f{half.x + half.z, half.y, half.x + half.z};
-    return {field::solids::boxDistance(degrees == 0 ? p : turned, {g.slot(half.x), g.slot(half.y), g.slot(half.z)}),
-            {centre - reach, centre + reach},
-            1,
-            0.5f};
-}
 
 Mesh meshed(const Scene& scene, int resolution, const PolygonizeOptions& options) {
     const BuiltMesh m = meshOf(scene, resolution, 2, options);
