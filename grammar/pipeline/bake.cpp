@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "modeler/core/atomic_file.h"
+#include "modeler/core/pages.h"
 #include "modeler/export/exporter.h"
 
 namespace sgm::pipeline {
@@ -86,6 +87,7 @@ Result<Bake> Bake::begin(const Model& model, const BakeRequest& request, Context
     Bake bake(model, request, context);
     if (const Status s = bake.ground_.check(); !s.ok()) return s.error();
     if (const Status s = bake.layOut(context); !s.ok()) return s.error();
+    bake.ground_.prepare();
     return bake;
 }
 
@@ -231,6 +233,7 @@ Status Bake::runCells(const std::vector<size_t>& cells, Context& context, const 
     std::map<Cell, std::vector<tiles::SurfacePiece>> ground;
     while (!open.empty()) {
         const std::vector<Cell> group = BakedGround::groupOf(open);
+        if (group.front().level > 0) releasePages(), releaseHeap();  // what groups leave unused would add up
         Context own{nullptr, context.threads};
         {
             const Added time(times_.ground);

@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <optional>
 
 #include "modeler/eval/evaluate.h"
+#include "modeler/eval/region_cuts.h"
 #include "modeler/mesh/chunk.h"
 #include "modeler/mesh/region.h"
 #include "modeler/tiles/skirt.h"
@@ -100,19 +104,55 @@ Gathered gather(std::vector<mesh::Chunk> chunks, const std::vector<BlockColumns>
     return out;
 }
 
-/// The box around pieces about `centre` and what hangs from them, in the model's frame.
-Box3f spaceOf(const std::vector<tiles::SurfacePiece>& pieces, Vec3d centre, double depth_m) {
-    const Box3f box = tiles::boundsOf(pieces);
-    const Vec3d margin{depth_m + 1, depth_m + 1, depth_m + 1};
-    return {(box.lo.as<double>() + centre - margin).as<float>(), (box.hi.as<double>() + centre + margin).as<float>()};
-}
+/// Tells what is inside on a cell's borders by a tape for each border, for a cell's own is long.
+class BorderTest {
+public:
+    /// `reach` is a box around what is asked for, about the cell's centre.
+    BorderTest(const eval::Tape& ofCell, Vec3d centre, double half, const Box3f& reach, eval::Workspace& workspace)
+        : ofCell_(ofCell), centre_(centre), half_(half), reach_(reach), workspace_(workspace) {}
 
-/// The tape without what can't matter in a box.
-eval::Tape within(const eval::Tape& tape, const Box3f& box, eval::Workspace& workspace) {
-    eval::FloatInterval range;
-    const eval::RangeTrace trace = eval::evaluateRanges(tape, {&box, 1}, &range, workspace);
-    return eval::shorten(tape, trace, 0, workspace);
-}
+    std::vector<bool> operator()(const std::vector<Vec3d>& places) {
+        std::vector<bool> is(places.size());
+        for (size_t border = 0; border < tapes_.size(); ++border) {
+            std::vector<size_t> here;
+            std::vector<float> x, y, z;
+            for (size_t i = 0; i < places.size(); ++i) {
+                if (borderOf(places[i]) != border) continue;
+                const Vec3f p = (places[i] + centre_).as<float>();
+                here.push_back(i), x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
+            }
+            if (here.empty()) continue;
+            std::vector<float> value(here.size());
+            eval::evaluate(tapeAt(border), {x.data(), y.data(), z.data(), x.size()}, value.data(), workspace_);
+            for (size_t i = 0; i < here.size(); ++i) is[here[i]] = value[i] < 0;
+        }
+        return is;
+    }
+
+private:
+    /// Of low and high x, then of low and high z.
+    size_t borderOf(const Vec3d& place) const {
+        if (std::abs(place.x) == half_) return place.x < 0 ? 0 : 1;
+        return place.z < 0 ? 2 : 3;
+    }
+    const eval::Tape& tapeAt(size_t border) {
+        auto& tape = tapes_[border];
+        if (tape) return *tape;
+        const int axis = border < 2 ? 0 : 2;
+        const Vec3d margin{1, 1, 1};
+        Vec3d lo = reach_.lo.as<double>(), hi = reach_.hi.as<double>();
+        lo[axis] = hi[axis] = border % 2 == 0 ? -half_ : half_;
+        const Box3f box{(lo + centre_ - margin).as<float>(), (hi + centre_ + margin).as<float>()};
+        return tape.emplace(eval::shortenTo(ofCell_, box, workspace_));
+    }
+
+    const eval::Tape& ofCell_;
+    const Vec3d centre_;
+    const double half_;
+    const Box3f reach_;
+    eval::Workspace& workspace_;
+    std::array<std::optional<eval::Tape>, 4> tapes_;
+};
 
 }  // namespace
 
@@ -219,29 +259,21 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
     for (size_t i = 0; i < group.size(); ++i)
         made[group[i]] = tiles::groundPieces(gathered.mesh, gathered.triangles[i], model_.lowered->provenance,
                                              group[i].centre(request_.side_m), pitch);
-    if (request_.levels < 2) return made;
-    for (const Cell& cell : group)
-        if (auto& pieces = made[cell]; !pieces.empty()) addSkirts(cell, pieces);
+    if (request_.levels > 1)
+        for (const Cell& cell : group)
+            if (auto& pieces = made[cell]; !pieces.empty()) addSkirts(cell, pieces);
+    if (group.front().level > 0) scratch_.clear(), workspace_ = eval::Workspace();  // as large as their tapes are long
     return made;
 }
 
 void BakedGround::addSkirts(const Cell& cell, std::vector<tiles::SurfacePiece>& pieces) {
-    const Vec3d centre = cell.centre(request_.side_m);
     // Surfaces of neighbouring levels are closer to each other than half a cell of the finer one's grid.
-    const double depth = pitch_m(cell.level) / 2;
-    const eval::Tape tape = within(tapeOf(cell), spaceOf(pieces, centre, depth), workspace_);
-    const tiles::InsideTest inside = [&](const std::vector<Vec3d>& places) {
-        std::vector<float> x, y, z, value(places.size());
-        for (const Vec3d& place : places) {
-            const Vec3f p = (place + centre).as<float>();
-            x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
-        }
-        if (!places.empty()) eval::evaluate(tape, {x.data(), y.data(), z.data(), x.size()}, value.data(), workspace_);
-        std::vector<bool> is;
-        for (const float v : value) is.push_back(v < 0);
-        return is;
-    };
-    const tiles::SkirtRequest request{cell.side_m(request_.side_m), depth, inside};
+    const double side = cell.side_m(request_.side_m), depth = pitch_m(cell.level) / 2;
+    Box3f reach = tiles::boundsOf(pieces);
+    const Vec3f margin = Vec3d{depth, depth, depth}.as<float>();
+    reach = {reach.lo - margin, reach.hi + margin};
+    BorderTest inside(tapeOf(cell), cell.centre(request_.side_m), side / 2, reach, workspace_);
+    const tiles::SkirtRequest request{side, depth, std::ref(inside)};
     for (tiles::SurfacePiece& piece : pieces) tiles::addSkirts(piece, request);
 }
 

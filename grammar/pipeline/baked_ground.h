@@ -36,6 +36,8 @@ public:
 
     /// Error::Usage where the grid has more cells than can be counted and its cells are no power of two.
     Status check() const;
+    /// Looks through the model once for what matters where, so that cells take no time and memory by its size.
+    void prepare() { tapes_.cutWhole(); }
     /// The cells whose ground is made together: those of `cells` with the first one's level and parent, for what is
     /// around them is then meshed once.
     static std::vector<tiles::Cell> groupOf(const std::vector<tiles::Cell>& cells);

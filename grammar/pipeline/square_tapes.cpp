@@ -10,20 +10,8 @@ namespace {
 
 using tiles::Cell;
 
-/// Instructions from which on a tape has no trace kept, of some 200 bytes each for the four quarters.
-constexpr size_t longTape = 1 << 15;
 constexpr int splitLevels = 3;               ///< that a long tape is cut across: to eight by eight squares
 constexpr int mostAlong = 1 << splitLevels;  ///< squares
-
-/// The tape without what can't matter in a box. What that takes besides the result is gone afterwards where it is much.
-eval::Tape shortened(const eval::Tape& tape, const Box3f& box, eval::Workspace& workspace) {
-    std::optional<eval::Workspace> own;
-    if (tape.size() > longTape) own.emplace();
-    eval::Workspace& w = own ? *own : workspace;
-    eval::FloatInterval range;
-    const eval::RangeTrace trace = eval::evaluateRanges(tape, {&box, 1}, &range, w);
-    return eval::shorten(tape, trace, 0, w);
-}
 
 Cell ancestorOf(Cell cell, int level) {
     while (cell.level < level) cell = cell.parent();
@@ -48,8 +36,8 @@ bool SquareTapes::Cuts::has(const Cell& square) const {
     return square.level == level && square.x >= x && square.x < x + along && square.z >= z && square.z < z + across;
 }
 
-SquareTapes::Cuts SquareTapes::cutsOf(const eval::Tape& tape, const Cell& from, const Cell& to,
-                                      eval::Workspace& workspace) const {
+SquareTapes::Cuts SquareTapes::cutsOf(const eval::Tape& tape, const Cell& from, const Cell& to) const {
+    eval::Workspace workspace;  // as large as the tape asks for, which those of cells don't
     std::vector<Box3f> boxes;
     for (int z = from.z; z <= to.z; ++z)
         for (int x = from.x; x <= to.x; ++x) boxes.push_back(boxOf({from.level, x, z}));
@@ -61,12 +49,15 @@ SquareTapes::Cuts SquareTapes::cutsOf(const eval::Tape& tape, const Cell& from, 
             eval::RegionCuts(tape, {boxes.data(), boxes.size()}, workspace)};
 }
 
-/// A square's tape from that of a larger one: what is cut off first is whole parts.
+/// A square's tape from that of a larger one: whole parts go first, what is in them only where a short tape is left.
 eval::Tape SquareTapes::cut(const eval::Tape& tape, const Cuts& cuts, const Cell& square,
                             eval::Workspace& workspace) const {
-    if (cuts.cuts.empty() || !cuts.has(square)) return shortened(tape, boxOf(square), workspace);
+    if (cuts.cuts.empty() || !cuts.has(square)) return eval::shortenTo(tape, boxOf(square), workspace);
     const int index = (square.z - cuts.z) * cuts.along + square.x - cuts.x;
-    return shortened(cuts.cuts.cut(tape, static_cast<size_t>(index), workspace), boxOf(square), workspace);
+    eval::Workspace own;  // what a long tape takes is gone afterwards
+    eval::Tape parts = cuts.cuts.cut(tape, static_cast<size_t>(index), own);
+    if (parts.size() > eval::mostTraced) return parts;
+    return eval::shortenTo(parts, boxOf(square), workspace);
 }
 
 /// The tape of a quarter of a step's square. Quarters come one after the other: one pass over the tape serves all four.
@@ -83,17 +74,21 @@ eval::Tape SquareTapes::quarterOf(Step& around, const Cell& quarter, eval::Works
                          workspace);
 }
 
-/// The square around another one that is cut from the whole tape.
-SquareTapes::Step SquareTapes::first(const Cell& square, eval::Workspace& workspace) {
-    if (!ofWhole_) {
+void SquareTapes::cutWhole() {
+    if (!ofWhole_ && !bounds_.empty()) {
         const auto at = [&](float x, float z) {
             return ancestorOf(tiles::cellAt(static_cast<double>(x), static_cast<double>(z), finest_m_),
                               margins_.doublings);
         };
         Cell from = at(bounds_.lo.x, bounds_.lo.z), to = at(bounds_.hi.x, bounds_.hi.z);
         while (to.x - from.x >= mostAlong || to.z - from.z >= mostAlong) from = from.parent(), to = to.parent();
-        ofWhole_ = cutsOf(whole_, from, to, workspace);
+        ofWhole_ = cutsOf(whole_, from, to);
     }
+}
+
+/// The square around another one that is cut from the whole tape.
+SquareTapes::Step SquareTapes::first(const Cell& square, eval::Workspace& workspace) {
+    cutWhole();
     const Cell top = ancestorOf(square, ofWhole_->level);
     return {top, cut(whole_, *ofWhole_, top, workspace), {}, {}};
 }
@@ -101,7 +96,7 @@ SquareTapes::Step SquareTapes::first(const Cell& square, eval::Workspace& worksp
 /// The next square on the way from a larger one to one in it.
 SquareTapes::Step SquareTapes::below(Step& around, const Cell& square, eval::Workspace& workspace) const {
     const Cell& from = around.square;
-    if (around.tape.size() <= longTape) {
+    if (around.tape.size() <= eval::mostTraced) {
         const Cell quarter = ancestorOf(square, from.level - 1);
         return {quarter, quarterOf(around, quarter, workspace), {}, {}};
     }
@@ -110,7 +105,7 @@ SquareTapes::Step SquareTapes::below(Step& around, const Cell& square, eval::Wor
     if (!around.cuts) {
         const int along = 1 << (from.level - level);
         const Cell corner{level, from.x * along, from.z * along};
-        around.cuts = cutsOf(around.tape, corner, {level, corner.x + along - 1, corner.z + along - 1}, workspace);
+        around.cuts = cutsOf(around.tape, corner, {level, corner.x + along - 1, corner.z + along - 1});
     }
     return {next, cut(around.tape, *around.cuts, next, workspace), {}, {}};
 }

@@ -24,6 +24,9 @@ public:
     /// level 0.
     SquareTapes(const eval::Tape& whole, const Box3f& bounds, double finest_m, const Margins& margins);
 
+    /// Finds out which parts of the whole tape matter where, in passes over all of it; the first call of `over` does it
+    /// otherwise.
+    void cutWhole();
     /// The tape for a square and its margin around it, also above and below the box: the values, owners and labels
     /// there are those of the whole one. Valid until the next call. Squares that follow others in the same larger one
     /// cost little more than the tapes that they get. A long tape is cut to 64 squares at once, so that what is held
@@ -46,8 +49,7 @@ private:
     Step first(const tiles::Cell& square, eval::Workspace& workspace);
     Step below(Step& around, const tiles::Cell& square, eval::Workspace& workspace) const;
     eval::Tape quarterOf(Step& around, const tiles::Cell& quarter, eval::Workspace& workspace) const;
-    Cuts cutsOf(const eval::Tape& tape, const tiles::Cell& from, const tiles::Cell& to,
-                eval::Workspace& workspace) const;
+    Cuts cutsOf(const eval::Tape& tape, const tiles::Cell& from, const tiles::Cell& to) const;
     eval::Tape cut(const eval::Tape& tape, const Cuts& cuts, const tiles::Cell& square,
                    eval::Workspace& workspace) const;
     Box3f boxOf(const tiles::Cell& square) const;

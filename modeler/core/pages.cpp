@@ -7,6 +7,9 @@
 #include <cstdint>
 #include <mutex>
 #include <new>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "modeler/core/map_pages.h"
 
@@ -129,6 +132,12 @@ void freePages(void* memory, size_t bytes) noexcept {
 }  // namespace detail
 
 void releasePages() noexcept { freeRegions().release(); }
+
+void releaseHeap() noexcept {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
 
 void clearAhead(std::span<const UnusedMemory> memory, const std::atomic<bool>* isEnough) noexcept {
 #if defined(MADV_POPULATE_WRITE)

@@ -24,6 +24,10 @@ void freePages(void* memory, size_t bytes) noexcept;
 /// Gives regions that nothing lies in back to the system. Otherwise up to 4 GiB stay, all but 256 MiB its to reclaim.
 void releasePages() noexcept;
 
+/// Gives what the heap holds unused back to the system, down to single pages. The C library keeps what lies between
+/// pieces in use, which is hundreds of MiB after some models. Takes milliseconds, by how many pieces there are.
+void releaseHeap() noexcept;
+
 /// Memory that has been allocated and not written yet.
 struct UnusedMemory {
     const void* begin = nullptr;

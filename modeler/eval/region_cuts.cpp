@@ -153,4 +153,20 @@ Tape RegionCuts::cut(const Tape& tape, size_t region, Workspace& workspace) cons
     return result;
 }
 
+Tape shortenTo(const Tape& tape, const Box3f& box, Workspace& workspace) {
+    const auto byTrace = [&](const Tape& whole, Workspace& scratch) {
+        FloatInterval range;
+        const RangeTrace trace = evaluateRanges(whole, {&box, 1}, &range, scratch);
+        return shorten(whole, trace, 0, scratch);
+    };
+    if (tape.size() <= mostTraced) return byTrace(tape, workspace);
+    const RegionCuts cuts(tape, {&box, 1}, workspace);
+    if (cuts.empty()) {
+        Workspace own;  // what the trace takes is gone afterwards
+        return byTrace(tape, own);
+    }
+    Tape parts = cuts.cut(tape, 0, workspace);
+    return parts.size() > mostTraced ? std::move(parts) : byTrace(parts, workspace);
+}
+
 }  // namespace sgm::eval

@@ -31,4 +31,11 @@ private:
     std::vector<std::array<uint64_t, 2>> left_;  ///< of each minimum's operands: regions that they are left in, by bit
 };
 
+/// Longer tapes have no trace made of all of their instructions, at some 120 bytes each, where there is another way.
+inline constexpr size_t mostTraced = 1 << 13;
+
+/// The tape without what can't matter in a box: there it has the same values, owners, labels and derivatives. A long
+/// union is first cut by its parts; where that leaves it long, parts stay as they are.
+Tape shortenTo(const Tape& tape, const Box3f& box, Workspace& workspace);
+
 }  // namespace sgm::eval

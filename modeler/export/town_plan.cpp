@@ -7,18 +7,12 @@
 namespace sgm::exporter {
 namespace {
 
-Status writeText(const ExportInput& input, const std::string& text, const Path& temporary, const Path& target) {
+/// Writes the plan by one of town's writers.
+template <auto write>
+Status writePlan(const ExportInput& input, const Path& temporary, const Path& target) {
     OutFile out(temporary, target, input.progress);
-    out.text(text);
+    write(*input.plan, [&](std::string_view piece) { out.text(piece); });
     return out.finish();
-}
-
-Status writeSvg(const ExportInput& input, const Path& temporary, const Path& target) {
-    return writeText(input, town::svgOf(*input.plan), temporary, target);
-}
-
-Status writeGeoJson(const ExportInput& input, const Path& temporary, const Path& target) {
-    return writeText(input, town::geoJsonOf(*input.plan), temporary, target);
 }
 
 }  // namespace
@@ -28,7 +22,7 @@ constinit const Exporter svgFormat{
     .doc = "The plan of a town: roads, blocks, lots, water and parks, a group each; metres, north up",
     .options = {},
     .takesPositionsOnly = saysPositionsOnly,
-    .write = writeSvg,
+    .write = writePlan<town::writeSvg>,
     .wantsPlan = true,
 };
 
@@ -37,7 +31,7 @@ constinit const Exporter geojsonFormat{
     .doc = "The plan of a town, a feature an area with its layer, key, area and length along streets; metres",
     .options = {},
     .takesPositionsOnly = saysPositionsOnly,
-    .write = writeGeoJson,
+    .write = writePlan<town::writeGeoJson>,
     .wantsPlan = true,
 };
 

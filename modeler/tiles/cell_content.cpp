@@ -65,7 +65,7 @@ public:
         }
         figures_.instances += object.places.size();
         figures_.triangles += held.triangles * object.places.size();
-        const size_t mesh = addLibraryMesh(object, held.file);
+        const size_t mesh = addLibraryMesh(object, held.file());
         if (content_.asNodes) {
             for (size_t i = 0; i < object.places.size(); ++i)
                 addNode(placeNode(object, *object.places[i].part, mesh, translations[i], rotations[i]));
@@ -178,7 +178,7 @@ private:
 
     Json nodeOf(const CellObject& object, const Library::Entry& held, size_t mesh, double step,
                 const Json& attributes) const {
-        Json node{{"name", held.file.json["meshes"][0].value("name", "object")}, {"mesh", mesh}};
+        Json node{{"name", held.name}, {"mesh", mesh}};
         if (step != 1) node["scale"] = {step, step, step};
         node["extensions"] = instancing(attributes, object.places.size());
         node["extras"] = object.values;
@@ -247,7 +247,7 @@ Vec3d vectorOf(const Json& node, const char* key, Vec3d fallback) {
     return {node[key][0].get<double>(), node[key][1].get<double>(), node[key][2].get<double>()};
 }
 
-/// What cells take over of a file's JSON, in no more memory than it needs: lists that were read have room to grow.
+/// What cells take over of a file's JSON.
 Json withoutTheRest(const Json& json) {
     Json kept;
     for (const char* key : {"meshes", "accessors", "bufferViews", "materials", "textures", "images"})
@@ -270,7 +270,10 @@ Result<Library::Entry> readEntry(const std::filesystem::path& path) {
         entry.box.hi = entry.grid.origin + entry.grid.step * vectorOf(position, "max", {});
         entry.triangles += json["accessors"][primitive["indices"].get<size_t>()]["count"].get<uint64_t>() / 3;
     }
-    entry.file = {withoutTheRest(json), {}, read->bytesAt, read->fileBytes};
+    entry.name = json["meshes"][0].value("name", "object");
+    entry.json = Json::to_cbor(withoutTheRest(json));
+    entry.json.shrink_to_fit();
+    entry.bytesAt = read->bytesAt, entry.fileBytes = read->fileBytes;
     return entry;
 }
 
@@ -292,6 +295,8 @@ Status writeObject(const LibraryObject& object, Packing packing, const std::file
          {"primitives", file.addPieces(object.pieces, object.materials, grid, object.inColors)}});
     return writeGlb(file.finish(), path);
 }
+
+Glb Library::Entry::file() const { return {Json::from_cbor(json), {}, bytesAt, fileBytes}; }
 
 Result<const Library::Entry*> Library::open(const std::filesystem::path& path) {
     if (const auto known = recent_.find(path); known != recent_.end()) return &known->second;

@@ -74,10 +74,15 @@ Status writeObject(const LibraryObject& object, Packing packing, const std::file
 class Library {
 public:
     struct Entry {
-        Glb file;  ///< without bytes, and of its JSON what cells take over
+        std::string name;           ///< of the object
+        std::vector<uint8_t> json;  ///< what cells take over of the file's, as CBOR: a tenth of what objects take
+        uint64_t bytesAt = 0;       ///< where the binary chunk begins in the file
+        uint64_t fileBytes = 0;     ///< of the file
         QuantizationGrid grid;
         Box3d box;  ///< metres
         uint64_t triangles = 0;
+        /// The file without its bytes, O(its primitives).
+        Glb file() const;
     };
     /// Valid until the next call. Error::Input for a file that can't be read.
     Result<const Entry*> open(const std::filesystem::path& path);

@@ -48,7 +48,7 @@ void appendCoordinates(std::string& out, const plan::Ring& ring) {
 
 }  // namespace
 
-std::string svgOf(const TownPlan& plan) {
+void writeSvg(const TownPlan& plan, const TextSink& write) {
     plan::Box2 box;
     for (const PlanFeature& f : plan.features) {
         const plan::Box2 own = bounds(f.area);
@@ -56,38 +56,38 @@ std::string svgOf(const TownPlan& plan) {
     }
     if (box.empty()) box.add({0, 0});
     const Vec2 size = box.size();
-    std::string out = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{} {} {} {}\">\n",
-                                  number(box.lo.x), number(box.lo.z), number(size.x), number(size.z));
+    write(fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{} {} {} {}\">\n", number(box.lo.x),
+                      number(box.lo.z), number(size.x), number(size.z)));
     for (const Layer& layer : layers) {
         bool any = false;
         for (const PlanFeature& f : plan.features) {
             if (f.layer != layer.name) continue;
             if (!any)
-                out += fmt::format(
+                write(fmt::format(
                     "<g class=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\".3\" fill-rule=\"evenodd\">\n",
-                    layer.name, layer.fill, layer.stroke);
+                    layer.name, layer.fill, layer.stroke));
             any = true;
-            out += "<path d=\"";
+            std::string out = "<path d=\"";
             for (const plan::Polygon& polygon : f.area.polygons) {
                 appendPath(out, polygon.outer);
                 for (const plan::Ring& court : polygon.courts) appendPath(out, court);
             }
-            out += f.key ? fmt::format("\" id=\"{}-{:016x}\"/>\n", layer.name, f.key) : "\"/>\n";
+            write(out + (f.key ? fmt::format("\" id=\"{}-{:016x}\"/>\n", layer.name, f.key) : "\"/>\n"));
         }
-        if (any) out += "</g>\n";
+        if (any) write("</g>\n");
     }
-    return out + "</svg>\n";
+    write("</svg>\n");
 }
 
-std::string geoJsonOf(const TownPlan& plan) {
+void writeGeoJson(const TownPlan& plan, const TextSink& write) {
     // Without a name a small town's metres would be read as degrees.
-    std::string out =
+    write(
         "{\"type\":\"FeatureCollection\",\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"urn:sgm:crs:metres\"}},"
-        "\"features\":[\n";
+        "\"features\":[\n");
     bool first = true;
     for (const PlanFeature& f : plan.features) {
         if (f.area.polygons.empty()) continue;
-        out += first ? "" : ",\n";
+        std::string out = first ? "" : ",\n";
         first = false;
         out += fmt::format("{{\"type\":\"Feature\",\"properties\":{{\"layer\":\"{}\",\"area\":{}", f.layer,
                            number(area(f.area)));
@@ -100,9 +100,9 @@ std::string geoJsonOf(const TownPlan& plan) {
             for (const plan::Ring& court : f.area.polygons[i].courts) out += ',', appendCoordinates(out, court);
             out += ']';
         }
-        out += "]}}";
+        write(out + "]}}");
     }
-    return out + "\n]}\n";
+    write("\n]}\n");
 }
 
 }  // namespace sgm::town

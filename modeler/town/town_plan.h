@@ -2,6 +2,7 @@
 // Enters: features with areas. Leaves: the bytes of an SVG or GeoJSON file, the same everywhere. Assumes sound areas.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,10 +26,14 @@ struct TownPlan {
     bool empty() const { return features.empty(); }
 };
 
-/// Metres as user units, x right and z down; a group a layer, with its name as class.
-std::string svgOf(const TownPlan& plan);
+/// Takes a text piece by piece, front to back.
+using TextSink = std::function<void(std::string_view)>;
+
+/// Metres as user units, x right and z down; a group a layer, with its name as class. `write` gets a piece an area, so
+/// that no plan is held as a text.
+void writeSvg(const TownPlan& plan, const TextSink& write);
 /// RFC 7946 in form, with metres for coordinates (x east, z south turned to north) as `readGeoJson` takes them: a
-/// feature an area, with layer, key, area and the length along streets.
-std::string geoJsonOf(const TownPlan& plan);
+/// feature an area, with layer, key, area and the length along streets. `write` gets a piece a feature.
+void writeGeoJson(const TownPlan& plan, const TextSink& write);
 
 }  // namespace sgm::town

@@ -1,7 +1,5 @@
 #include "tests/bench/memory.h"
 
-#include <malloc.h>
-
 #include <fstream>
 #include <string>
 
@@ -25,8 +23,7 @@ uint64_t statusBytes(const std::string& key) {
 }  // namespace
 
 PeakMemory::PeakMemory() {
-    malloc_trim(0);  // what earlier work left unused
-    releasePages();
+    releasePages(), releaseHeap();                // what earlier work left unused
     std::ofstream("/proc/self/clear_refs") << 5;  // proc(5): resets the peak to what is resident now
     start_bytes_ = statusBytes("VmRSS");
 }

@@ -120,5 +120,28 @@ TEST(RegionCuts, AreEmptyWithoutAUnion) {
     EXPECT_TRUE(RegionCuts(tape, {&box, 1}, w).empty());
 }
 
+/// Short ones by their trace, long unions by their parts, what else is long by a trace after all.
+TEST(ShortenTo, HoldsWhatTheWholeTapeDoesInTheBox) {
+    for (const auto& [count, isUnion] : {std::pair<size_t, bool>{60, true}, {4000, true}, {4000, false}}) {
+        Graph graph;
+        Draws draws{11};
+        const field::Point p = graph.position();
+        std::vector<field::Operand> balls;
+        for (size_t i = 0; i < count; ++i) {
+            const field::Point at{p.x - graph.slot(draws.real(-60, 60)), p.y - graph.slot(draws.real(-1, 1)),
+                                  p.z - graph.slot(draws.real(-60, 60))};
+            balls.push_back({(length(at) - graph.slot(draws.real(0.4f, 1.2f))).id(), static_cast<OriginId>(i + 1)});
+        }
+        const NodeRef all = balancedUnion(graph, balls);
+        const Box3f bounds{{-64, -4, -64}, {64, 4, 64}}, box{{8, -1, 8}, {16, 1, 16}};
+        const Tape tape = compile(graph, {isUnion ? all : max(all, abs(p.y) - 0.5f), bounds, 1, 1}, graph.constants());
+        ASSERT_EQ(tape.size() > mostTraced, count > 1000);
+        Workspace w;
+        const Tape some = shortenTo(tape, box, w);
+        EXPECT_LT(some.size(), tape.size() / 4) << count;
+        expectSame(some, tape, box, count);
+    }
+}
+
 }  // namespace
 }  // namespace sgm::eval::testing

@@ -176,13 +176,15 @@ TEST(TownPlan, CanBeReadBack) {
     TownPlan plan;
     const Town town(5);
     for (const Block& block : town.blocks) plan.features.push_back({"block", block.land, block.key, 0});
-    const std::string json = geoJsonOf(plan);
+    std::string json, drawing;
+    writeGeoJson(plan, [&](std::string_view piece) { json += piece; });
+    writeSvg(plan, [&](std::string_view piece) { drawing += piece; });
     const auto back = plan::readGeoJson(json);
     ASSERT_TRUE(back.ok()) << back.error().message;
     ASSERT_EQ(back->list.size(), town.blocks.size());
     for (size_t i = 0; i < town.blocks.size(); ++i)
         EXPECT_NEAR(area(back->list[i].footprint), area(town.blocks[i].land), .5);
-    const auto svg = plan::readSvg(svgOf(plan));
+    const auto svg = plan::readSvg(drawing);
     ASSERT_TRUE(svg.ok()) << svg.error().message;
     EXPECT_EQ(svg->list.size(), town.blocks.size());
 }

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include "modeler/core/guarded.h"
+#include "modeler/core/pages.h"
 
 namespace sgm::document {
 namespace fs = std::filesystem;
@@ -17,14 +15,6 @@ namespace {
 
 constexpr double patience_s = 1;  ///< a request that is overtaken may run on for so long
 constexpr std::chrono::seconds restBeforeGivingBack{2};
-
-/// Memory that is free goes to the system. The C library keeps what lies between blocks in use: hundreds of MiB after
-/// some models.
-void giveBackFreeMemory() {
-#ifdef __GLIBC__
-    malloc_trim(0);
-#endif
-}
 
 bool sameOptions(const derive::Options& a, const derive::Options& b) {
     return a.start == b.start && a.derive == b.derive && a.params == b.params && a.seed == b.seed &&
@@ -168,7 +158,7 @@ void Session::work() {
             const auto asked = [this] { return queue_.pending || queue_.quit || !queue_.deferred.empty(); };
             if (worked && !queue_.wanted.wait_for(lock, restBeforeGivingBack, asked)) {
                 lock.unlock();
-                giveBackFreeMemory();
+                releaseHeap();
                 worked = false;
                 continue;
             }
