@@ -104,7 +104,7 @@ Gathered gather(std::vector<mesh::Chunk> chunks, const std::vector<BlockColumns>
     return out;
 }
 
-/// Tells what is inside on a cell's borders by a tape for each border, for a cell's own is long.
+/// Finds which places on a cell's borders are inside the solid, with a tape for each border, for a cell's own is long.
 class BorderTest {
 public:
     /// `reach` is a box around what is asked for, about the cell's centre.

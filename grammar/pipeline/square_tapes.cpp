@@ -37,7 +37,7 @@ bool SquareTapes::Cuts::has(const Cell& square) const {
 }
 
 SquareTapes::Cuts SquareTapes::cutsOf(const eval::Tape& tape, const Cell& from, const Cell& to) const {
-    eval::Workspace workspace;  // as large as the tape asks for, which those of cells don't
+    eval::Workspace workspace;  // grows with the tape, so it isn't the one that is kept for cells
     std::vector<Box3f> boxes;
     for (int z = from.z; z <= to.z; ++z)
         for (int x = from.x; x <= to.x; ++x) boxes.push_back(boxOf({from.level, x, z}));
@@ -54,7 +54,7 @@ eval::Tape SquareTapes::cut(const eval::Tape& tape, const Cuts& cuts, const Cell
                             eval::Workspace& workspace) const {
     if (cuts.cuts.empty() || !cuts.has(square)) return eval::shortenTo(tape, boxOf(square), workspace);
     const int index = (square.z - cuts.z) * cuts.along + square.x - cuts.x;
-    eval::Workspace own;  // what a long tape takes is gone afterwards
+    eval::Workspace own;  // grows with the tape as well
     eval::Tape parts = cuts.cuts.cut(tape, static_cast<size_t>(index), own);
     if (parts.size() > eval::mostTraced) return parts;
     return eval::shortenTo(parts, boxOf(square), workspace);
@@ -75,15 +75,13 @@ eval::Tape SquareTapes::quarterOf(Step& around, const Cell& quarter, eval::Works
 }
 
 void SquareTapes::cutWhole() {
-    if (!ofWhole_ && !bounds_.empty()) {
-        const auto at = [&](float x, float z) {
-            return ancestorOf(tiles::cellAt(static_cast<double>(x), static_cast<double>(z), finest_m_),
-                              margins_.doublings);
-        };
-        Cell from = at(bounds_.lo.x, bounds_.lo.z), to = at(bounds_.hi.x, bounds_.hi.z);
-        while (to.x - from.x >= mostAlong || to.z - from.z >= mostAlong) from = from.parent(), to = to.parent();
-        ofWhole_ = cutsOf(whole_, from, to);
-    }
+    if (ofWhole_ || bounds_.empty()) return;
+    const auto at = [&](float x, float z) {
+        return ancestorOf(tiles::cellAt(static_cast<double>(x), static_cast<double>(z), finest_m_), margins_.doublings);
+    };
+    Cell from = at(bounds_.lo.x, bounds_.lo.z), to = at(bounds_.hi.x, bounds_.hi.z);
+    while (to.x - from.x >= mostAlong || to.z - from.z >= mostAlong) from = from.parent(), to = to.parent();
+    ofWhole_ = cutsOf(whole_, from, to);
 }
 
 /// The square around another one that is cut from the whole tape.

@@ -25,7 +25,7 @@ public:
     SquareTapes(const eval::Tape& whole, const Box3f& bounds, double finest_m, const Margins& margins);
 
     /// Finds out which parts of the whole tape matter where, in passes over all of it; the first call of `over` does it
-    /// otherwise.
+    /// otherwise. Nothing for an empty box, in which `over` has no meaning.
     void cutWhole();
     /// The tape for a square and its margin around it, also above and below the box: the values, owners and labels
     /// there are those of the whole one. Valid until the next call. Squares that follow others in the same larger one

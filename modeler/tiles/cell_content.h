@@ -75,7 +75,7 @@ class Library {
 public:
     struct Entry {
         std::string name;           ///< of the object
-        std::vector<uint8_t> json;  ///< what cells take over of the file's, as CBOR: a tenth of what objects take
+        std::vector<uint8_t> json;  ///< what cells take over of the file's, as CBOR, which is smaller
         uint64_t bytesAt = 0;       ///< where the binary chunk begins in the file
         uint64_t fileBytes = 0;     ///< of the file
         QuantizationGrid grid;

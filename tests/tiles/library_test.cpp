@@ -54,7 +54,7 @@ TEST(Library, TellsTheBoxOfAnObject) {
     ASSERT_TRUE(entry.ok());
     EXPECT_NEAR((*entry)->box.hi.x, 2, 1e-4);
     EXPECT_NEAR((*entry)->box.hi.y, 1, 1e-4);
-    EXPECT_EQ((*entry)->file.fileBytes, fs::file_size(file));
+    EXPECT_EQ((*entry)->fileBytes, fs::file_size(file));
 }
 
 }  // namespace
