@@ -18,6 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 using tiles::Cell;
 
+/// Objects made between two releases of unused memory: a release takes some milliseconds.
+constexpr size_t objectsPerRelease = 8;
+
 template <class T>
 std::string_view bytesOf(const std::vector<T>& list) {
     return {reinterpret_cast<const char*>(list.data()), list.size() * sizeof(T)};
@@ -212,6 +215,7 @@ Status Bake::makeObjects(const tiles::Share& share, Context& context) {
     if (context.progress) context.progress->begin("objects", end - begin);
     for (size_t i = begin; i < end; ++i) {
         if (cancelled(context.progress)) return cancelledError();
+        if ((i - begin) % objectsPerRelease == 0) releasePages(), releaseHeap();  // what they leave unused would add up
         Context own{nullptr, context.threads};
         for (int level = 0; level < std::min(request_.levels, 2); ++level)
             if (const Status s = makeObject(used_[i], level, own); !s.ok()) return s;
@@ -232,7 +236,7 @@ Status Bake::runCells(const std::vector<size_t>& cells, Context& context, const 
     inSquares(open, request_.levels);
     std::map<Cell, std::vector<tiles::SurfacePiece>> ground;
     while (!open.empty()) {
-        const std::vector<Cell> group = BakedGround::groupOf(open);
+        const std::vector<Cell> group = ground_.groupOf(open);
         if (group.front().level > 0) releasePages(), releaseHeap();  // what groups leave unused would add up
         Context own{nullptr, context.threads};
         {

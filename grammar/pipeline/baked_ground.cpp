@@ -163,10 +163,12 @@ BakedGround::BakedGround(const Model& model, const GroundRequest& request)
       tapes_(model.tape, model.lowered->field.bounds, request.side_m,
              {1.125 * request.cell_m * mesh::blockCells, request.levels - 1}) {}
 
-std::vector<Cell> BakedGround::groupOf(const std::vector<Cell>& cells) {
+std::vector<Cell> BakedGround::groupOf(const std::vector<Cell>& cells) const {
+    const Cell& first = cells.front();
+    if (first.level > 0 && first.level == request_.levels - 1) return {first};
     std::vector<Cell> group;
     for (const Cell& cell : cells)
-        if (cell.level == cells.front().level && cell.parent() == cells.front().parent()) group.push_back(cell);
+        if (cell.level == first.level && cell.parent() == first.parent()) group.push_back(cell);
     return group;
 }
 

@@ -39,8 +39,8 @@ public:
     /// Looks through the model once for what matters where, so that cells take no time and memory by its size.
     void prepare() { tapes_.cutWhole(); }
     /// The cells whose ground is made together: those of `cells` with the first one's level and parent, for what is
-    /// around them is then meshed once.
-    static std::vector<tiles::Cell> groupOf(const std::vector<tiles::Cell>& cells);
+    /// around them is then meshed once. Cells of the coarsest level are made one at a time, for their tapes are long.
+    std::vector<tiles::Cell> groupOf(const std::vector<tiles::Cell>& cells) const;
     /// The pieces of each, about its centre. Errors of mesh::subdivide and mesh::meshBlocks.
     Result<std::map<tiles::Cell, std::vector<tiles::SurfacePiece>>> make(const std::vector<tiles::Cell>& group,
                                                                          Context& context);

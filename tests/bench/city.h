@@ -14,17 +14,18 @@ namespace sgm::bench {
 
 struct CityCase {
     std::string name;
+    double buildings = 1e4;  ///< about as many
     double side_m = 4500;
     bool isDistinct = false;  ///< every building is an object of its own as far as chance decides something of it
     double objectCell_m = .3;
     double share = 1;         ///< of the cells, drawn by their places
     double bar_s = 0;         ///< of processor time; 0: none
     bool isShared = false;    ///< baked once more by two processes at a time
-    double groundCell_m = 2;  ///< at 23 km float32 tells no vertices apart in cells of less than 3 m
+    double groundCell_m = 2;  ///< at 25 km float32 tells no vertices apart in cells of less than 3 m
 };
 
-struct CityCosts {
-    CityCase what;
+/// What baking a case costs: plain bytes, which one process hands to another.
+struct CityFigures {
     uint64_t places = 0, objects = 0, cells = 0, bakedCells = 0, bakedObjects = 0;
     double plan_s = 0, baked_s = 0;                ///< processor time, measured
     double total_s = 0;                            ///< plan and all cells; projected where only a share was baked
@@ -34,8 +35,15 @@ struct CityCosts {
     double twoWorkers_s = 0;  ///< processor time of the slower of two, with its plan; 0: not measured
 };
 
+/// The figures of a case.
+struct CityCosts : CityFigures {
+    CityCase what;
+};
+
 /// The cases of docs/city.md with at most so many buildings.
 std::vector<CityCase> cityCases(double mostBuildings);
+/// Bakes in a process of its own, as a worker does: what earlier cases leave in the heap would count as memory.
+/// Error::Input where the town can't be read, and what baking says.
 Result<CityCosts> measureCity(const CityCase& what);
 std::string cityHeader();
 std::string cityLine(const CityCosts& costs);
