@@ -68,6 +68,22 @@ TEST_F(Parts, ASlabOwnsItsSurfaceWhereAProbeEndsAtItsFoot) {
     EXPECT_EQ(prepared->originsOf(probes, 1), std::vector<OriginId>(probes.size(), 2));
 }
 
+/// Their fields differ by rounding alone, which changes from probe to probe.
+TEST_F(Parts, FacesInOnePlaneBelongToTheFirst) {
+    Scene scene;
+    scene.add("cube", {0, -2, 0}, {3, 5.3, 3}, {1, 1, 1});
+    scene.add("cube", {0, 2.4, 0}, {2, .9, 2}, {1, 0, 0});
+    const field::Field field = scene.sum();
+    const auto prepared = prepareField(scene.compile(field), field.bounds, scene.provenance, 2, nullptr);
+    ASSERT_TRUE(prepared.ok());
+    std::vector<PreparedField::Probe> probes;
+    for (int i = 0; i < 400; ++i) {
+        const float x = .004f * static_cast<float>(i), slant = .001f * static_cast<float>(i % 7);
+        probes.push_back({{x, 3.303f, .5f}, {x + slant, 3.293f - slant, .5f}});
+    }
+    EXPECT_EQ(prepared->originsOf(probes, 1), std::vector<OriginId>(probes.size(), 1));
+}
+
 TEST_F(Parts, CellsKnowTheFieldExactly) {
     Scene scene;
     for (uint64_t i = 0; i < 40; ++i) {

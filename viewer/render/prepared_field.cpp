@@ -64,8 +64,10 @@ std::vector<OriginId> ownersAt(const eval::Tape& tape, const std::vector<Prepare
         const float met = at[inside - 1] + (at[inside] - at[inside - 1]) * (before / (before - after));
         put(0, k, std::min(met + behind, 1.0f));
     }
+    // Of faces in one plane the first part has all of it, as in meshes: by values alone rounding would decide.
+    std::vector<uint32_t> labels(n);
     std::vector<OriginId> origins(n);
-    eval::evaluateOrigin(tape, {x.data(), y.data(), z.data(), n}, origins.data(), workspace);
+    eval::evaluateLabels(tape, {x.data(), y.data(), z.data(), n}, labels.data(), origins.data(), workspace);
     return origins;
 }
 
