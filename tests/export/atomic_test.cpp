@@ -10,14 +10,13 @@
 
 #include <chrono>
 #include <fstream>
-#include <thread>
 
 #include "modeler/core/atomic_file.h"
 #include "modeler/export/exporter.h"
-#include "tests/cpu_time.h"
 #include "tests/export/hand_made.h"
 #include "tests/export/read_back.h"
 #include "tests/scratch.h"
+#include "tests/stop_time.h"
 
 namespace sgm::exporter {
 namespace {
@@ -96,24 +95,15 @@ TEST_P(Atomic, AWriteThatIsCancelledOnItsWayStopsSoon) {
         chunk.origins.push_back(0);
     }
     const double most_s = boundSeconds(.05);
-    double late_s = 2 * most_s;
-    for (int attempt = 0; late_s > most_s && attempt < 5; ++attempt) {  // other work may have lengthened it
-        Progress progress;
-        input.progress = &progress;
-        const clockid_t writer = threadClock();
-        double asked_s = 0;
-        std::thread watcher([&] {
-            while (*progress.stage() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            asked_s = secondsOf(writer);
-            progress.cancel();
+    const double late_s = leastSecondsToStop(
+        most_s, threadClock(), [](const Progress& progress) { return *progress.stage() != 0; },
+        [&](Progress& progress) {
+            input.progress = &progress;
+            const Status written = write(input, target);
+            ASSERT_FALSE(written.ok());
+            EXPECT_EQ(written.error().kind, Error::Kind::Cancelled);
         });
-        const Status written = write(input, target);
-        const double ended_s = secondsOf(writer);
-        watcher.join();
-        late_s = ended_s - asked_s;
-        ASSERT_FALSE(written.ok());
-        EXPECT_EQ(written.error().kind, Error::Kind::Cancelled);
-    }
+    input.progress = nullptr;
     EXPECT_LT(late_s, most_s);
     EXPECT_EQ(contentOf(target), "the old file");
 }

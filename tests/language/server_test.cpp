@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -324,19 +326,18 @@ TEST_F(Client, AKeystrokeOfAThousandLinesTakesLittle) {
     EXPECT_TRUE(problems_[uri_].empty()) << problems_[uri_].dump().substr(0, 300);
     const syntax::Source source("", text);
     const Position end = positionOf(source, static_cast<uint32_t>(text.find(" + sphere", text.size() / 2)));
-    double worst = 0, sum = 0;
-    constexpr int strokes = 20;
-    for (int i = 0; i < strokes; ++i) {
-        const double begin = secondsOf(CLOCK_PROCESS_CPUTIME_ID);
+    std::array<double, 20> strokes_s{};
+    for (size_t i = 0; i < strokes_s.size(); ++i) {
+        const double begin_s = secondsOf(CLOCK_PROCESS_CPUTIME_ID);
         change({end, end}, i % 2 == 0 ? " " : "c");
         askAt("completion", {end.line, end.character + 1});
-        const double ms = 1000 * (secondsOf(CLOCK_PROCESS_CPUTIME_ID) - begin);
-        worst = std::max(worst, ms);
-        sum += ms;
+        strokes_s[i] = secondsOf(CLOCK_PROCESS_CPUTIME_ID) - begin_s;
     }
+    std::sort(strokes_s.begin(), strokes_s.end());
+    const double median_s = strokes_s[strokes_s.size() / 2];  // other work may lengthen some
     std::printf("a change of 993 lines, its problems and its completions: %.1f ms of the processor, at most %.1f\n",
-                sum / strokes, worst);
-    EXPECT_LT(worst, 1000 * boundSeconds(.05)) << "ms";
+                1000 * median_s, 1000 * strokes_s.back());
+    EXPECT_LT(median_s, boundSeconds(.05));
 }
 
 }  // namespace

@@ -7,14 +7,13 @@
 #include <cstring>
 #include <limits>
 #include <set>
-#include <thread>
 
 #include "modeler/core/conventions.h"
 #include "modeler/mesh/validate.h"
 #include "modeler/mesh/vertices.h"
-#include "tests/cpu_time.h"
 #include "tests/mesh/mesh_bytes.h"
 #include "tests/mesh/scenes.h"
+#include "tests/stop_time.h"
 
 namespace sgm::mesh {
 namespace {
@@ -355,25 +354,22 @@ TEST(Polygonize, EmptyFieldsGiveEmptyMeshes) {
 TEST(Polygonize, StopsWithinFiftyMilliseconds) {
     const Scene s = cloudScene(3000, 0.05f, 9);
     const eval::Tape tape = s.tape();
-    Progress progress;
-    Counts counts;
-    double asked = 0;
-    std::thread watcher([&] {
-        while (std::strcmp(progress.stage(), "sample") != 0 || progress.fraction() < 0.02)
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        asked = secondsOf(CLOCK_PROCESS_CPUTIME_ID);
-        progress.cancel();
-    });
     const Grid grid = gridFor(s.field.bounds, cellFor(s.field.bounds, 600));
-    const auto blocks = subdivide(tape, grid, 2, &progress, counts);
-    ASSERT_TRUE(blocks.ok());
-    const auto mesh = polygonize(*blocks, grid, {}, &progress, counts);
-    const double ended = secondsOf(CLOCK_PROCESS_CPUTIME_ID);
-    watcher.join();
-    const double late = ended - asked;
-    ASSERT_FALSE(mesh.ok());
-    EXPECT_EQ(mesh.error().kind, Error::Kind::Cancelled);
-    EXPECT_LT(late, boundSeconds(.1));  // on two threads
+    const double most_s = boundSeconds(.1);  // on two threads
+    const double late_s = leastSecondsToStop(
+        most_s, CLOCK_PROCESS_CPUTIME_ID,
+        [](const Progress& progress) {
+            return std::strcmp(progress.stage(), "sample") == 0 && progress.fraction() >= .02;
+        },
+        [&](Progress& progress) {
+            Counts counts;
+            const auto blocks = subdivide(tape, grid, 2, &progress, counts);
+            ASSERT_TRUE(blocks.ok());
+            const auto mesh = polygonize(*blocks, grid, {}, &progress, counts);
+            ASSERT_FALSE(mesh.ok());
+            EXPECT_EQ(mesh.error().kind, Error::Kind::Cancelled);
+        });
+    EXPECT_LT(late_s, most_s);
 }
 
 }  // namespace

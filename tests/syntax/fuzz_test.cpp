@@ -16,26 +16,17 @@
 namespace sgm::syntax {
 namespace {
 
-/// Processor seconds that reading takes.
-double secondsToRead(const std::string& text) {
-    const SourcePtr source = makeSource(text);
-    Diagnostics diagnostics;
-    const double begin = secondsOf(threadClock());
-    parse(source, operations::table(), diagnostics);
-    return secondsOf(threadClock()) - begin;
-}
-
 /// What is wrong with how `text` was parsed and formatted, in words; empty when nothing is. Counts texts without
 /// problems.
 std::string judge(const std::string& text, size_t& parsed) {
     const SourcePtr source = makeSource(text);
     Diagnostics diagnostics;
-    const double begin = secondsOf(threadClock());
-    const Ast ast = parse(source, operations::table(), diagnostics);
-    double seconds = secondsOf(threadClock()) - begin;
+    Ast ast;
     const double most = boundSeconds(.05);
-    for (int again = 0; seconds > most && again < 4; ++again)  // other work may have lengthened it
-        seconds = std::min(seconds, secondsToRead(text));
+    const double seconds = leastSeconds(most, [&] {
+        diagnostics = {};
+        ast = parse(source, operations::table(), diagnostics);
+    });
     if (seconds > most) return "parsing took " + std::to_string(1e3 * seconds) + " ms";
     for (const Diagnostic& d : diagnostics.all()) {
         if (d.span.source != source.get() || d.span.begin > d.span.end || d.span.end > text.size())

@@ -1,18 +1,16 @@
 // Level sets sampled from fields with known distances.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <fstream>
-#include <thread>
 
 #include "modeler/core/conventions.h"
 #include "modeler/eval/evaluate.h"
 #include "modeler/field/field.h"
 #include "modeler/mesh/validate.h"
 #include "modeler/volume/volume.h"
-#include "tests/cpu_time.h"
 #include "tests/scratch.h"
+#include "tests/stop_time.h"
 
 namespace sgm::volume {
 namespace {
@@ -179,20 +177,15 @@ TEST(Sample, StopsWithinABatchOfBlocks) {
     mesh::Counts counts;
     const auto blocks = mesh::subdivide(tape, grid, 2, nullptr, counts);
     ASSERT_TRUE(blocks.ok());
-    Progress progress;
-    const clockid_t worker = threadClock();
-    double asked = 0;
-    std::thread watcher([&] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(30));
-        asked = secondsOf(worker);
-        progress.cancel();
-    });
-    const auto volume = sample(*blocks, tape, grid, 3, 1, &progress);
-    watcher.join();
-    const double late = secondsOf(worker) - asked;
-    ASSERT_FALSE(volume.ok());
-    EXPECT_EQ(volume.error().kind, Error::Kind::Cancelled);
-    EXPECT_LT(late, boundSeconds(.05));
+    const double late_s = leastSecondsToStop(
+        boundSeconds(.05), threadClock(),
+        [waits = 0](const Progress& progress) mutable { return *progress.stage() != 0 && ++waits % 30 == 0; },
+        [&](Progress& progress) {
+            const auto volume = sample(*blocks, tape, grid, 3, 1, &progress);
+            ASSERT_FALSE(volume.ok());
+            EXPECT_EQ(volume.error().kind, Error::Kind::Cancelled);
+        });
+    EXPECT_LT(late_s, boundSeconds(.05));
 }
 
 TEST(VdbFile, TellsWhatItHolds) {
