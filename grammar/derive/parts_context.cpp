@@ -94,8 +94,11 @@ std::optional<Scope> PartsContext::cut(int axis, double low_m, double high_m) {
     part.centre += part.axes * moved;
     part.size[axis] = high_m - low_m;
     if (part.footprint == none || axis == 1) return part;
-    const double lo = low_m <= 0 ? -plan::Limits{}.farthest_m : low_m - whole_m / 2;
-    const double hi = high_m >= whole_m ? plan::Limits{}.farthest_m : high_m - whole_m / 2;
+    // A mitred plate reaches beyond its scope, and the first and last part have that too; lengths that share a scope
+    // add up to it but for rounding.
+    const double slack_m = 1e-9 * whole_m;
+    const double lo = low_m <= slack_m ? -plan::Limits{}.farthest_m : low_m - whole_m / 2;
+    const double hi = high_m >= whole_m - slack_m ? plan::Limits{}.farthest_m : high_m - whole_m / 2;
     const plan::Footprint clipped = plan::cleaned(
         plan::placed(plan::between(footprint(), axis == 0 ? 0 : 1, lo, hi), {1, 1}, {-moved.x, -moved.z}));
     part.footprint = none;

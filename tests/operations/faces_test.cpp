@@ -61,6 +61,22 @@ TEST(Faces, PlatesFillTheBlockWithoutOverlap) {
     }
 }
 
+/// At concave corners plates reach beyond their scopes: the last part of a split has that too, however lengths add up.
+TEST(Faces, PartsOfSplitPlatesSumToThem) {
+    const auto volumeOf = [](const std::string& wall) {
+        return volumesOf(derived("grammar 1\nterminal wall\nstart A -> footprint ell(18, 14, 7, 6) extrude 4m Mass\n"
+                                 "rule Mass -> faces .4m { side: Side | rest: nil }\nrule Side -> " +
+                                 wall + "\n"))
+            .at("wall");
+    };
+    const double whole_m3 = volumeOf("wall");
+    for (const char* split :
+         {"split x { ~.7: wall | { ~2.4m: wall }* | ~.7: wall }", "split x { ~.7: wall | { ~2.4m: wall }* }",
+          "split x { 1m: wall | { ~2m: wall }* }", "split x { { ~1.1m: wall }* | ~.3: wall }",
+          "split x { ~1: wall | ~.1: wall | ~.7: wall }"})
+        EXPECT_NEAR(volumeOf(split), whole_m3, 1e-3) << split;
+}
+
 TEST(Faces, TheFirstWordThatFitsAnEdgeWins) {
     const auto volumes =
         volumesOf(derived(block("rect(10, 6)", "faces .5m { front: front | side: wall | rest: nil }")));
