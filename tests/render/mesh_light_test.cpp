@@ -68,6 +68,14 @@ TEST_F(MeshLightPicture, ALintelOfALongWallHasItsShadow) {
     }
 }
 
+/// The eye is far from the middle of a long box and near one of its corners, which lies aside of the view's middle.
+TEST_F(MeshLightPicture, ACornerBesideTheEyeIsWhole) {
+    const Drawn corner({box({-4, -1.125, -2.5}, {4, 1.125, 2.5})}, {{5.5, 1.3, 4.2}, {4, 0, 1}, .8});
+    const double sunny = corner.brightness(Vec3d{3.85, .2, 2.5});
+    for (const Vec3d place : {Vec3d{3.9, 1.05, 2.5}, {3.7, .95, 2.5}, {3.9, .9, 2.5}})
+        EXPECT_NEAR(corner.brightness(place), sunny, .1 * sunny) << place.x << ' ' << place.y;
+}
+
 TEST_F(MeshLightPicture, LightOfTheSkyHasNoSteps) {
     // Two sides of a court with a roof on piers, in the shade, on a plate of 60 m.
     std::vector<mesh::Chunk> boxes{box({-30, -.4, -30}, {30, 0, 30}), box({-13.5, 0, -13}, {-13.1, 5.5, 13}),

@@ -268,14 +268,16 @@ Result<std::vector<Vec3f>> MeshScene::seenFrom(const PictureOptions& options, Pr
 Matrix4 MeshScene::clipOf(const PictureOptions& options, double left, double low, int width, int height) const {
     const View view = viewOf(options.camera, options.width, options.height);
     const double size = length(bounds_.size().as<double>()), away = length(bounds_.centre().as<double>() - view.eye);
-    const double near = nearest(view.eye), far = near + 2 * size + away;
+    const double near = nearest(view), far = near + 2 * size + away;
     return tileMatrix(view, options, near, far, left, low, width, height);
 }
 
-/// How near to an eye something is drawn, metres.
-double MeshScene::nearest(Vec3d eye) const {
-    const double size = length(bounds_.size().as<double>());
-    return std::max(length(bounds_.centre().as<double>() - eye) - size / 2, 1e-3 * size);
+/// The least depth at which something is drawn, metres: that of the nearest corner of the bounds.
+double MeshScene::nearest(const View& view) const {
+    const Vec3d half = bounds_.size().as<double>() / 2, centre = bounds_.centre().as<double>();
+    const Vec3d& ahead = view.forward;
+    const double reach = std::abs(ahead.x) * half.x + std::abs(ahead.y) * half.y + std::abs(ahead.z) * half.z;
+    return std::max(dot(ahead, centre - view.eye) - reach, 1e-3 * 2 * length(half));
 }
 
 void MeshScene::bindTextures(const Program& program) const {
@@ -340,7 +342,7 @@ Status MeshScene::draw(const ColorTarget& target, int x0, int y0, const PictureO
         if (Status s = drawTriangles(color, progress); !s) return s;
     }
     if (style.look != MeshLook::Creases) return Done{};
-    return drawCreases({clipFromWorld, view.eye.as<float>(), static_cast<float>(nearest(view.eye))}, target, style,
+    return drawCreases({clipFromWorld, view.eye.as<float>(), static_cast<float>(nearest(view))}, target, style,
                        progress);
 }
 

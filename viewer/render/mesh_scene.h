@@ -13,6 +13,7 @@
 #include "viewer/render/mesh_light.h"
 #include "viewer/render/mesh_style.h"
 #include "viewer/render/mesh_textures.h"
+#include "viewer/render/scene.h"
 
 namespace sgm::render {
 
@@ -76,7 +77,7 @@ public:
 private:
     Result<std::vector<Vec3f>> seenFrom(const PictureOptions& options, Progress* progress) const;
     Status drawTriangles(const Program& program, Progress* progress) const;
-    double nearest(Vec3d eye) const;
+    double nearest(const View& view) const;
     Matrix4 clipOf(const PictureOptions& options, double left, double low, int width, int height) const;
     void bindTextures(const Program& program) const;
     /// Nothing is drawn where a subsample isn't wanted.
