@@ -293,18 +293,17 @@ uint64_t CellPieces::confirmMeetings(const BlockTapes& tapes, eval::Workspace& w
     return probes_.size();
 }
 
-uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace,
-                                  uint32_t firstVertex) {
-    grid_ = &grid;
-    firstVertex_ = firstVertex;
-    for (Corner& corner : corners_.list) intersect(corner);
+/// Moves corners that aren't settled to where their pieces meet, as these are found near them. Returns how often the
+/// field was evaluated.
+uint64_t CellPieces::lookAtPlanes(const BlockTapes& tapes, eval::Workspace& workspace) {
+    const float cell_m = grid_->cell_m;
     uint64_t evaluations = 0;
     std::vector<PiecePoint> seen;
     for (int round = 0; round < cornerRounds && !corners_.list.empty(); ++round) {
         probes_.clear();
         for (const Corner& corner : corners_.list) {
             if (corner.settled) continue;
-            const bool isNear = length(corner.meeting - corner.at) <= leavingReach * grid.cell_m;
+            const bool isNear = length(corner.meeting - corner.at) <= leavingReach * cell_m;
             const Vec3f from = round > 0 && isNear ? corner.meeting : corner.at;
             for (const Vec3f& mean : corner.means) probes_.add(tapes, corner.brick, from + (mean - from) * probeShare);
         }
@@ -321,8 +320,7 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
                 const double value = found;
                 const Vec3d g = plane.gradient.as<double>();
                 const double square = dot(g, g);
-                if (plane.label == corner.labels[k] && square > 0 &&
-                    std::abs(value) < std::sqrt(square) * grid.cell_m) {
+                if (plane.label == corner.labels[k] && square > 0 && std::abs(value) < std::sqrt(square) * cell_m) {
                     plane.at = (plane.at.as<double>() - g * (value / square)).as<float>();
                     seen.push_back(plane);
                 } else {
@@ -334,11 +332,22 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
             corner.planes.swap(seen);
             const Vec3f before = corner.meeting;
             intersect(corner);
-            corner.settled = corner.settled && length(corner.meeting - before) <= settledShare * grid.cell_m;
+            corner.settled = corner.settled && length(corner.meeting - before) <= settledShare * cell_m;
         }
     }
+    return evaluations;
+}
+
+uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eval::Workspace& workspace,
+                                  uint32_t firstVertex) {
+    grid_ = &grid;
+    firstVertex_ = firstVertex;
+    for (Corner& corner : corners_.list) intersect(corner);
+    uint64_t evaluations = lookAtPlanes(tapes, workspace);
     evaluations += moveToSurface(tapes, workspace);
     evaluations += searchFlatCorners(tapes, workspace);
+    if (const uint64_t searched = borderCorners_.place(corners_.list, tapes, grid, workspace); searched > 0)
+        evaluations += searched + lookAtPlanes(tapes, workspace);  // creases may be round
     evaluations += confirmMeetings(tapes, workspace);
     writeCorners();
     return evaluations;

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "modeler/mesh/border_corners.h"
 #include "modeler/mesh/face_creases.h"
 #include "modeler/mesh/mesh.h"
 
@@ -78,18 +79,7 @@ private:
         uint32_t firstPolygon, endPolygon;  ///< in order
         int32_t corner;                     ///< −1 for none
     };
-    struct Corner {
-        Vec3i cell;
-        size_t brick;
-        uint32_t loop;
-        Vec3f at;              ///< inside the cell
-        Vec3f meeting;         ///< of its planes: `at`, or outside the cell
-        bool settled = false;  ///< looking again would move it no more
-        bool leaves = false;   ///< the pieces were found around a meeting outside the cell
-        std::vector<PiecePoint> planes;
-        std::vector<uint32_t> labels;
-        std::vector<Vec3f> means;  ///< by label: the middle of its nodes
-    };
+    using Corner = CellCorner;
 
     struct Corners {
         std::vector<Corner> list, spare;
@@ -115,6 +105,7 @@ private:
     uint64_t searchFlatCorners(const BlockTapes& tapes, eval::Workspace& workspace);
     FlatCorner squareAround(Corner& corner) const;
     bool narrow(FlatCorner& flat, size_t sample) const;
+    uint64_t lookAtPlanes(const BlockTapes& tapes, eval::Workspace& workspace);
     void intersect(Corner& corner) const;
     void writeCorners();
     bool liesInFace(Vec3f a, Vec3f b) const;
@@ -124,7 +115,6 @@ private:
     bool crosses(const PieceTriangles& out, size_t firstTriangle) const;
     bool isPartedByCrease(const Loop& loop) const;
     Vec3f middleOf(uint32_t firstLoop, uint32_t endLoop) const;
-    static bool isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle);
     void fan(uint32_t loop, Vec3f middle, PieceTriangles& out);
     void dropTriangles(size_t triangles, PieceTriangles& out);
     bool fanApart(uint32_t firstLoop, uint32_t endLoop, PieceTriangles& out);
@@ -140,6 +130,7 @@ private:
     std::vector<Polygon> polygons_;
     std::vector<Loop> loops_;
     Corners corners_;
+    BorderCorners borderCorners_;
     PieceSamples probes_;  ///< near corners
     std::vector<uint32_t> cellEnds_;
     uint32_t firstVertex_ = 0;

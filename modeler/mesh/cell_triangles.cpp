@@ -20,6 +20,16 @@ bool holds(Vec3d a, Vec3d b, Vec3d c, Vec3d p, Vec3d n) {
     return facing(a, b, p, n) >= 0 && facing(b, c, p, n) >= 0 && facing(c, a, p, n) >= 0;
 }
 
+/// Whether a loop has two pieces along one crease, and the point amid that.
+bool isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle) {
+    int breaks = 0;
+    Vec3f sum{};
+    for (const LoopNode& node : nodes)
+        if (node.isBreak) ++breaks, sum += *node.crossing;
+    middle = sum * 0.5f;
+    return breaks == 2;
+}
+
 }  // namespace
 
 void CellPieces::emit(const LoopNode& a, const LoopNode& b, const LoopNode& c, const Polygon& piece, Vec3f normal,
@@ -137,16 +147,6 @@ Vec3f CellPieces::middleOf(uint32_t firstLoop, uint32_t endLoop) const {
     for (uint32_t l = firstLoop; l < endLoop; ++l)
         for (uint32_t i = loops_[l].firstNode; i < loops_[l].endNode; ++i, ++count) sum += nodes_[i].at;
     return sum * (1.0f / static_cast<float>(count));
-}
-
-/// Whether a loop has two pieces along one crease, and the point amid that.
-bool CellPieces::isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle) {
-    int breaks = 0;
-    Vec3f sum{};
-    for (const LoopNode& node : nodes)
-        if (node.isBreak) ++breaks, sum += *node.crossing;
-    middle = sum * 0.5f;
-    return breaks == 2;
 }
 
 /// Triangles from a point in the cell, the nearest one to `place`, to all sides of the loop; they never cross each
