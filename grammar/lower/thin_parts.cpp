@@ -7,6 +7,7 @@
 
 #include "grammar/derive/boxes.h"
 #include "grammar/derive/lift.h"
+#include "grammar/lower/face_points.h"
 #include "grammar/lower/mesh_positions.h"
 #include "grammar/lower/missing_sections.h"
 #include "grammar/lower/presence.h"
@@ -34,12 +35,7 @@ constexpr double leastOfFaces = 0.03;      ///< the same of faces that are cover
 constexpr double leastExposed = 0.05;      ///< share of a bounded part's faces that has to be its surface
 constexpr double besideFace = 0.04;        ///< of half an extent: where either side of a face is looked at, at most
 constexpr double besideCells = 0.1;        ///< cells: the same
-/// Points of a face that are looked at.
-struct FacePoints {
-    int mostAlong, most;
-    double apart = 1;  ///< of half a cell, or of the thickness where that is less
-};
-constexpr FacePoints roughly{16, 64}, closely{256, 1024}, atBorders{1024, 8192, 0.25};
+constexpr FacePoints roughly{16, 64}, closely{256, 1024}, atBorders{1024, 8192, 0.25, true};
 constexpr double leastRoughly = 0.7;        ///< share of a face that has to be free to be looked at closely
 constexpr float reachCells = 0.4375f;       ///< a part's mesh is so near to where the field has its surface
 constexpr float tornShare = 0.08f;          ///< of a round part's thickness: its mesh is so near
@@ -180,23 +176,14 @@ private:
     double exposedShare(const Candidate& candidate, int axis, const eval::Tape& tape, const FacePoints& points) {
         const derive::Scope& scope = candidate.scope;
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        const double apart_m =
-            points.apart * std::min(0.5 * cell_m_, minComponent(scope.size));  // what crosses a bar is about as wide
-        const auto along = [&](int across, int most) {
-            return static_cast<int>(
-                std::clamp(std::ceil(scope.size[across] / apart_m), double{fewestLines}, static_cast<double>(most)));
-        };
-        const bool uIsLong = scope.size[u] > scope.size[v];
-        const int onLong = along(uIsLong ? u : v, points.mostAlong),
-                  onShort = along(uIsLong ? v : u, points.most / onLong);
-        const int alongU = uIsLong ? onLong : onShort, alongV = uIsLong ? onShort : onLong;
+        const auto [alongU, alongV] = points.counts(scope, u, v, cell_m_);
         const double beside = std::min(besideFace, 2 * besideCells * cell_m_ / scope.size[axis]);
         rows_.clear(), middles_.clear();
         for (const double side : {-1.0, 1.0})
             for (int j = 0; j < alongV; ++j)
-                for (int i = 0; i < alongU; ++i) {  // off the middle, so that no point lies in a plane of symmetry
+                for (int i = 0; i < alongU; ++i) {
                     Vec3d share{};
-                    share[u] = 2 * (i + 0.535) / alongU - 1, share[v] = 2 * (j + 0.535) / alongV - 1;
+                    share[u] = points.place(i, alongU), share[v] = points.place(j, alongV);
                     share[axis] = side;
                     middles_.add(scope.point(share).as<float>());
                     for (const double way : {-beside, beside}) {

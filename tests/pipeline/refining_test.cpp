@@ -178,7 +178,11 @@ TEST(Refining, BarsAndPanesThatCrossLackNothing) {
         {"cube size (6, 2.4, .2) + cube size (6, 2.4, .4) move (0, 0, -.3m) + cube size (.06m, 1.2m, .12m) move (0, 0, "
          "-.04m) + cube size (1.2m, .06m, .12m) move (0, 0, -.04m)",
          .1},
-        {"cube size (3, 1.6, .1) + cube size (.08, 1.6, .2) move (.5m, 0, 0)", .15}};
+        {"cube size (3, 1.6, .1) + cube size (.08, 1.6, .2) move (.5m, 0, 0)", .15},
+        // A strip of 1 cm of a plate of 90 reaches into a post.
+        {"cube size (9, 12, 1) + cube size (.9m, 6m, .02m) move (.55m, 0, 1m) + cube size (.22m, 6m, 1m) move (0, 0, "
+         ".6m)",
+         .09375}};
     for (const auto& [text, cell_m] : cases) {
         Context context{nullptr, 2};
         const Model model = modelOf("grammar 2\nstart W -> " + std::string(text) + "\n", context);
