@@ -68,7 +68,8 @@ void remarkLostTurn(TreeBuilder& builder, const Element& e, const Mating& mating
                angleBetween(asked, place.scope.axes) - slack;
     if (lost)
         builder.warn(turn->span, "the joints face each other all the same: only the turn about them is left",
-                     "turn what a group holds, as in '+ (cube turn (30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or "
+                     "leave it out if the shape stands as it should; else turn what a group holds, as in '+ (cube turn "
+                     "(30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or "
                      "place it by 'move'");
 }
 

@@ -167,13 +167,13 @@ void checkOn(OperationChecker& checker, const syntax::Attribute& written) {
 
 void needOperator(OperationChecker& checker, const Element& element, const Attribute& attribute) {
     if (element.op != Operator::None) return;
+    const std::string_view name = attribute.operation->name;
+    std::string fix = "put '+', '-', '&' or 'morph' before it";
+    if (checker.isInPart())
+        fix += name == "at" ? "; the first shape of a part is placed by 'move', as in 'cylinder move (50%, 0, 0)'"
+                            : fmt::format("; the first shape of a part joins nothing: leave '{}' out there", name);
     checker.error(attribute.span,
-                  fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape",
-                              attribute.operation->name),
-                  checker.isInPart() && attribute.operation->name == "at"
-                      ? "put '+', '-', '&' or 'morph' before it; the first shape of a part is placed by 'move', as in "
-                        "'cylinder move (50%, 0, 0)'"
-                      : "put '+', '-', '&' or 'morph' before it");
+                  fmt::format("'{}' joins a newcomer to what stands, but no operator joins this shape", name), fix);
 }
 
 void agreeOn(OperationChecker& checker, const Element& element, const Attribute& attribute) {

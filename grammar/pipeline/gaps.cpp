@@ -1,7 +1,5 @@
 #include "grammar/pipeline/gaps.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -319,9 +317,14 @@ bool meets(const eval::Tape& tape, const Closest& closest, double cell_m) {
         .joins(closest.from + inward, closest.to - inward);
 }
 
-std::string partText(const Model& model, OriginId origin) {
-    const Part& part = model.lowered->provenance.parts[origin];
-    return fmt::format("'{}' ({}:{})", part.path.text(), part.file(), part.line());
+/// The part itself, or that which it cuts: the surface of a cut is the cutter's.
+OriginId cutPartOf(const Model& model, OriginId origin) {
+    const std::vector<derive::ShapeId>& shapeOf = model.lowered->shapeOf;
+    if (origin >= shapeOf.size() || shapeOf[origin] == derive::none) return origin;
+    const derive::Shape& shape = model.derivation.tree.shapes[shapeOf[origin]];
+    if (shape.op != rules::Operator::Difference || shape.parent == derive::none) return origin;
+    const auto host = std::find(shapeOf.begin(), shapeOf.end(), shape.parent);
+    return host == shapeOf.end() ? origin : static_cast<OriginId>(host - shapeOf.begin());
 }
 
 }  // namespace
@@ -348,7 +351,8 @@ Status findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, cons
         const auto closest = gaps->find(f.piece, static_cast<double>(cell_m), progress);
         if (cancelled(progress)) return cancelledError();
         if (!closest) continue;
-        const OriginId ours = gaps->originOf(closest->ours), theirs = gaps->originOf(closest->theirs);
+        const OriginId ours = cutPartOf(model, gaps->originOf(closest->ours)),
+                       theirs = cutPartOf(model, gaps->originOf(closest->theirs));
         const bool touches = meets(model.tape, *closest, static_cast<double>(cell_m));
         f.cause = {touches ? FloatCause::Kind::Touch : FloatCause::Kind::Gap,
                    closest->width_m,
@@ -358,42 +362,6 @@ Status findCauses(const Model& model, const mesh::Mesh& mesh, float cell_m, cons
                    theirs};
     }
     return Done{};
-}
-
-std::string causeText(const Model& model, const FloatCause& cause, float cell_m) {
-    const Vec3d at = cause.at;
-    switch (cause.kind) {
-        case FloatCause::Kind::Unknown:
-            return {};
-        case FloatCause::Kind::Gap:
-            if (cause.ours == cause.theirs)
-                return fmt::format("a gap of {:.3g} m divides {} at ({:.2f}, {:.2f}, {:.2f})", cause.width_m,
-                                   partText(model, cause.ours), at.x, at.y, at.z);
-            return fmt::format("a gap of {:.3g} m lies between its {} and {} at ({:.2f}, {:.2f}, {:.2f})",
-                               cause.width_m, partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y,
-                               at.z);
-        case FloatCause::Kind::Touch:
-            if (cause.ours == cause.theirs)
-                return fmt::format(
-                    "{} is thinner than a cell of {:.3g} m at ({:.2f}, {:.2f}, {:.2f}): smaller cells show it whole",
-                    partText(model, cause.ours), cell_m, at.x, at.y, at.z);
-            return fmt::format(
-                "its {} and {} meet at ({:.2f}, {:.2f}, {:.2f}) by less than a cell of {:.3g} m: let them overlap "
-                "more, or take smaller cells",
-                partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y, at.z, cell_m);
-        case FloatCause::Kind::Thin:
-        case FloatCause::Kind::Fragment: {
-            const double extent_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
-            const std::string part = partText(model, cause.theirs);
-            const std::string what =
-                cause.kind == FloatCause::Kind::Thin
-                    ? fmt::format("{}, {:.3g} m thick, holds it and", part, cause.width_m)
-                    : fmt::format("it is a fragment of a wall of {:.3g} m of {}, which", cause.width_m, part);
-            return fmt::format("{} is thinner than a cell of {:.3g} m: --resolution {} shows it", what, cell_m,
-                               static_cast<int>(std::ceil(extent_m / cause.whole_m)));
-        }
-    }
-    return {};
 }
 
 }  // namespace sgm::pipeline

@@ -82,6 +82,12 @@ bool fillsScope(const Grammar& grammar, SymbolId symbol) {
     });
 }
 
+/// Whether a shape is a roof, whose pitch tells its height.
+bool hasOwnHeight(const Element& e) {
+    const Solid* solid = e.content.solid();
+    return solid && solid->primitive && solid->primitive->plan == field::PlanUse::OwnHeight;
+}
+
 /// Whether a size says three components of which the second is a length.
 bool saysHeight(const Attribute& a) {
     if (a.operation->phase != Operation::Phase::Scope || !givesSize(a)) return false;
@@ -120,9 +126,11 @@ void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
                 if (!e.content.solid() &&
                     (symbol == none || !(grammar.symbols[symbol].terminal || fillsScope(grammar, symbol))))
                     continue;
-                diagnostics.warning(e.span, fmt::format("'{}' has no size, and a start's own scope is 1m", e.label),
-                                    "write its size, such as 'size (4, 3, 4)'; in a rule of what the start names it "
-                                    "fills that shape's scope");
+                diagnostics.warning(
+                    e.span, fmt::format("'{}' has no size, and a start's own scope is 1m", e.label),
+                    fmt::format("write its size, such as 'size (4, {}, 4)'; in a rule of what the start names it fills "
+                                "that shape's scope",
+                                hasOwnHeight(e) ? "100%" : "3"));
             }
         }
     }
@@ -131,16 +139,14 @@ void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
 void findUnusedHeights(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
     const auto look = [&](const Element& e) {
         if (e.span.source != grammar.sources[0].get()) return;
-        const Solid* solid = e.content.solid();
         // Of a roof that nothing joins the height says where its foot stands.
-        const bool isRoof =
-            e.op != Operator::None && solid && solid->primitive && solid->primitive->plan == field::PlanUse::OwnHeight;
+        const bool isRoof = e.op != Operator::None && hasOwnHeight(e);
         const auto spans = [](const Attribute& a) { return takes(a, syntax::ArgumentType::Point); };
         const bool isSpan = std::any_of(e.attributes.begin(), e.attributes.end(), spans);
         if (!isRoof && !isSpan) return;
-        const std::string what = isSpan
-                                     ? "'from … to …' says how long the shape is"
-                                     : fmt::format("'{}' is as high as its parameters make it", solid->primitive->name);
+        const std::string what =
+            isSpan ? "'from … to …' says how long the shape is"
+                   : fmt::format("'{}' is as high as its parameters make it", e.content.solid()->primitive->name);
         // A size before the shape says what its shares are of as well.
         for (const Attribute& a : e.attributes)
             if (saysHeight(a))

@@ -195,6 +195,10 @@ TEST(Unsized, SolidsThatJoinASizedOneInAStartAreTold) {
     EXPECT_EQ(checked("grammar 2\nstart A -> B size 4\nrule B -> cube + sphere at +y\n").messages(), "");
     EXPECT_EQ(checked("grammar 2\nstart A -> cube size 4 + B at +y\nrule B -> sphere\n").messages(),
               "warning: 'B' has no size, and a start's own scope is 1m\n");
+    const auto& roof = checked("grammar 2\nstart A -> cube size (7, 3, 6) + gableRoof(45deg) at +y\n");
+    ASSERT_EQ(roof.diagnostics.all().size(), 1u);
+    EXPECT_NE(roof.diagnostics.all()[0].hint.find("'size (4, 100%, 4)'"), std::string::npos)
+        << "its pitch is its height";
     EXPECT_EQ(checked("grammar 2\nstart A -> cube size 4 + B at +y\nrule B -> sphere size 3\n").messages(), "");
 }
 
