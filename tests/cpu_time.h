@@ -40,18 +40,23 @@ inline clockid_t threadClock() {
     return clock;
 }
 
-/// CPU seconds of the calling thread that `work` takes: the least of up to five runs, which go on while they take
-/// longer than `most_s`, for other work on the machine may lengthen one.
+/// The least seconds that `measure` returns in up to five calls, which end once it is no more than `most_s`: other work
+/// on the machine may lengthen a measurement.
+template <class Measure>
+double leastOfFive(double most_s, Measure&& measure) {
+    double least_s = measure();
+    for (int call = 1; call < 5 && least_s > most_s; ++call) least_s = std::min(least_s, measure());
+    return least_s;
+}
+
+/// CPU seconds of the calling thread that `work` takes, as leastOfFive.
 template <class Work>
 double leastSeconds(double most_s, Work&& work) {
-    double least_s = 0;
-    for (int run = 0; run < 5 && (run == 0 || least_s > most_s); ++run) {
+    return leastOfFive(most_s, [&] {
         const double begin_s = secondsOf(threadClock());
         work();
-        const double taken_s = secondsOf(threadClock()) - begin_s;
-        least_s = run == 0 ? taken_s : std::min(least_s, taken_s);
-    }
-    return least_s;
+        return secondsOf(threadClock()) - begin_s;
+    });
 }
 
 }  // namespace sgm

@@ -2,7 +2,6 @@
 // Enters: the work, and when to cancel it. Leaves: seconds. Assumes that the work looks at its progress.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -11,26 +10,23 @@
 
 namespace sgm {
 
-/// CPU seconds, on the clock of the process or of the calling thread, that `work(progress)` goes on after the cancel,
-/// which another thread asks for once `isReady(progress)` holds: the least of up to five runs, which go on while they
-/// take longer than `most_s`, for other work on the machine may lengthen one.
+/// CPU seconds that `work(progress)` takes from its cancel to its end, on the clock of the process or of the calling
+/// thread, as leastOfFive. A second thread cancels it as soon as `isReady(progress)` is true.
 template <class IsReady, class Work>
 double leastSecondsToStop(double most_s, clockid_t clock, IsReady&& isReady, Work&& work) {
-    double least_s = 0;
-    for (int run = 0; run < 5 && (run == 0 || least_s > most_s); ++run) {
+    return leastOfFive(most_s, [&] {
         Progress progress;
-        double asked_s = 0;
+        double cancelled_s = 0;
         std::thread watcher([&] {
             while (!isReady(progress)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            asked_s = secondsOf(clock);
+            cancelled_s = secondsOf(clock);
             progress.cancel();
         });
         work(progress);
         const double ended_s = secondsOf(clock);
         watcher.join();
-        least_s = run == 0 ? ended_s - asked_s : std::min(least_s, ended_s - asked_s);
-    }
-    return least_s;
+        return ended_s - cancelled_s;
+    });
 }
 
 }  // namespace sgm

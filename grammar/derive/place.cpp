@@ -69,8 +69,7 @@ void remarkLostTurn(TreeBuilder& builder, const Element& e, const Mating& mating
     if (lost)
         builder.warn(turn->span, "the joints face each other all the same: only the turn about them is left",
                      "leave it out if the shape stands as it should; else turn what a group holds, as in '+ (cube turn "
-                     "(30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or "
-                     "place it by 'move'");
+                     "(30deg, 0deg, 0deg)) size (1, 3, 1) at +y', or place it by 'move'");
 }
 
 /// Where an element cuts: a shape, and the child of it before which the cutter joins (none: as the last one).

@@ -1,5 +1,5 @@
 // Where a face of a scope is looked at: a grid of points, even along both sides where it would have too many.
-// Enters: a scope and an axis across the face. Leaves: how many points, and where. Assumes cells of a mesh.
+// Enters: a scope, the two axes in the face, the edge of a mesh's cells. Leaves: how many points, and where.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace sgm::lower {
 
-/// Points of a face that are looked at.
+/// Points of a face that are looked at: at most `mostAlong` along its longer side, and about `most` in all.
 struct FacePoints {
     int mostAlong, most;
     double apart = 1;          ///< of half a cell, or of the scope's thickness where that is less
@@ -20,7 +20,7 @@ struct FacePoints {
     /// Less than what counts as missing: no wider strip along a border stays unseen.
     static constexpr double borderShare = 0.0025;
 
-    /// How many points stand along the two axes in the face.
+    /// How many points stand along the axes `u` and `v` in the face; `cell_m` is the edge of the mesh's cells, metres.
     std::array<int, 2> counts(const derive::Scope& scope, int u, int v, double cell_m) const {
         const double apart_m =
             apart * std::min(0.5 * cell_m, minComponent(scope.size));  // what crosses a bar is as wide

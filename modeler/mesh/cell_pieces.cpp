@@ -344,10 +344,10 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
     firstVertex_ = firstVertex;
     for (Corner& corner : corners_.list) intersect(corner);
     uint64_t evaluations = lookAtPlanes(tapes, workspace);
-    evaluations += moveToSurface(tapes, workspace);
-    evaluations += searchFlatCorners(tapes, workspace);
     if (const uint64_t searched = borderCorners_.place(corners_.list, tapes, grid, workspace); searched > 0)
         evaluations += searched + lookAtPlanes(tapes, workspace);  // creases may be round
+    evaluations += moveToSurface(tapes, workspace);
+    evaluations += searchFlatCorners(tapes, workspace);
     evaluations += confirmMeetings(tapes, workspace);
     writeCorners();
     return evaluations;

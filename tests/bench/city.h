@@ -43,7 +43,7 @@ struct CityCosts : CityFigures {
 /// The cases of docs/city.md with at most so many buildings.
 std::vector<CityCase> cityCases(double mostBuildings);
 /// Bakes in a process of its own, as a worker does: what earlier cases leave in the heap would count as memory.
-/// Error::Input where the town can't be read, and what baking says.
+/// Error::Internal with what that process says where it fails.
 Result<CityCosts> measureCity(const CityCase& what);
 std::string cityHeader();
 std::string cityLine(const CityCosts& costs);

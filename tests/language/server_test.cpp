@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -326,18 +325,25 @@ TEST_F(Client, AKeystrokeOfAThousandLinesTakesLittle) {
     EXPECT_TRUE(problems_[uri_].empty()) << problems_[uri_].dump().substr(0, 300);
     const syntax::Source source("", text);
     const Position end = positionOf(source, static_cast<uint32_t>(text.find(" + sphere", text.size() / 2)));
-    std::array<double, 20> strokes_s{};
-    for (size_t i = 0; i < strokes_s.size(); ++i) {
-        const double begin_s = secondsOf(CLOCK_PROCESS_CPUTIME_ID);
-        change({end, end}, i % 2 == 0 ? " " : "c");
-        askAt("completion", {end.line, end.character + 1});
-        strokes_s[i] = secondsOf(CLOCK_PROCESS_CPUTIME_ID) - begin_s;
-    }
-    std::sort(strokes_s.begin(), strokes_s.end());
-    const double median_s = strokes_s[strokes_s.size() / 2];  // other work may lengthen some
+    constexpr int strokes = 20;
+    double sum_s = 0;
+    const double most_s = boundSeconds(.05);
+    const double worst_s = leastOfFive(most_s, [&] {
+        double worst = 0;
+        sum_s = 0;
+        for (int i = 0; i < strokes; ++i) {
+            const double begin_s = secondsOf(CLOCK_PROCESS_CPUTIME_ID);
+            change({end, end}, i % 2 == 0 ? " " : "c");
+            askAt("completion", {end.line, end.character + 1});
+            const double taken_s = secondsOf(CLOCK_PROCESS_CPUTIME_ID) - begin_s;
+            worst = std::max(worst, taken_s);
+            sum_s += taken_s;
+        }
+        return worst;
+    });
     std::printf("a change of 993 lines, its problems and its completions: %.1f ms of the processor, at most %.1f\n",
-                1000 * median_s, 1000 * strokes_s.back());
-    EXPECT_LT(median_s, boundSeconds(.05));
+                1000 * sum_s / strokes, 1000 * worst_s);
+    EXPECT_LT(worst_s, most_s);
 }
 
 }  // namespace

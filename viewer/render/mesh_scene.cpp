@@ -277,7 +277,7 @@ double MeshScene::nearest(const View& view) const {
     const Vec3d half = bounds_.size().as<double>() / 2, centre = bounds_.centre().as<double>();
     const Vec3d& ahead = view.forward;
     const double reach = std::abs(ahead.x) * half.x + std::abs(ahead.y) * half.y + std::abs(ahead.z) * half.z;
-    return std::max(dot(ahead, centre - view.eye) - reach, 1e-3 * 2 * length(half));
+    return std::max(dot(ahead, centre - view.eye) - reach, 2e-3 * length(half));
 }
 
 void MeshScene::bindTextures(const Program& program) const {
