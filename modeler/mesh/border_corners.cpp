@@ -12,6 +12,7 @@ constexpr float sameCosine = 0.9999f;     ///< between the normals of two pieces
 constexpr float leastSine = 0.1f;         ///< between the planes that make a crease
 constexpr float acrossCosine = 0.01f;     ///< between the crease and the normals: more tells where along it
 constexpr float besideShare = 0x1.0p-7f;  ///< of a cell: how far beside the crease the pieces are looked at
+constexpr float cornerReach = 8;          ///< of a cell, that a corner may lie outside its cell
 constexpr size_t linePoints = 9;          ///< looked at along the crease in a round
 constexpr int lineRounds = 5;
 
@@ -26,13 +27,21 @@ std::array<float, 2> withinBox(Vec3f p, Vec3f d, Vec3f low, Vec3f high) {
     return span;
 }
 
+/// The part of a line p + t d, d a unit vector, across which a box lies.
+std::array<float, 2> besideBox(Vec3f p, Vec3f d, const Box3f& box) {
+    const Vec3f middle = (box.lo + box.hi) * 0.5f, half = (box.hi - box.lo) * 0.5f;
+    const float at = dot(middle - p, d),
+                reach = std::abs(d.x) * half.x + std::abs(d.y) * half.y + std::abs(d.z) * half.z;
+    return {at - reach, at + reach};
+}
+
 }  // namespace
 
-/// The crease on which a corner lies, and the two pieces beside it whose border ends there; nothing where the planes
-/// tell the corner's place, or the crease leaves the cell.
+/// The crease on which a corner lies, which may leave its cell, and the two pieces beside it whose border ends there;
+/// nothing where the planes tell the corner's place.
 std::optional<BorderCorners::OnCrease> BorderCorners::creaseOf(CellCorner& corner, const Grid& grid) {
     const size_t n = corner.labels.size();
-    if (n < 3 || corner.meeting != corner.at) return std::nullopt;
+    if (n < 3 || corner.isSmooth || length(corner.meeting - corner.at) > cornerReach * grid.cell_m) return std::nullopt;
     std::vector<Vec3f> normals(n);
     for (size_t k = 0; k < n; ++k)
         for (const PiecePoint& plane : corner.planes)
@@ -49,12 +58,13 @@ std::optional<BorderCorners::OnCrease> BorderCorners::creaseOf(CellCorner& corne
                         [&](Vec3f normal) { return std::abs(dot(normal, along)) > acrossCosine; }))
             return std::nullopt;
         Vec3f beside = cross(normals[k], along);
-        if (dot(beside, (corner.means[k] + corner.means[next]) * 0.5f - corner.at) < 0) beside = -beside;
+        if (dot(beside, (corner.means[k] + corner.means[next]) * 0.5f - corner.meeting) < 0) beside = -beside;
         const Vec3i cell = corner.cell;
-        const auto [from, to] = withinBox(corner.at, along, grid.corner(cell.x, cell.y, cell.z),
-                                          grid.corner(cell.x + 1, cell.y + 1, cell.z + 1));
+        const Box3f box{grid.corner(cell.x, cell.y, cell.z), grid.corner(cell.x + 1, cell.y + 1, cell.z + 1)};
+        const auto [from, to] = corner.meeting == corner.at ? withinBox(corner.at, along, box.lo, box.hi)
+                                                            : besideBox(corner.meeting, along, box);
         if (!(from < to)) return std::nullopt;
-        return OnCrease{&corner, corner.at, along, beside * (besideShare * grid.cell_m), {k, next}, {from, to}};
+        return OnCrease{&corner, corner.meeting, along, beside * (besideShare * grid.cell_m), {k, next}, {from, to}};
     }
     return std::nullopt;
 }
@@ -77,7 +87,10 @@ uint64_t BorderCorners::place(std::span<CellCorner> corners, const BlockTapes& t
         for (size_t c = 0; c < open.size(); ++c) {
             if (!narrow(open[c], c * linePoints)) continue;  // within the margin of ties the wall shows instead
             CellCorner& corner = *open[c].corner;
-            corner.at = corner.meeting = inCell(grid, corner.cell, open[c].at(0.5f));
+            const bool leaves = corner.meeting != corner.at;
+            corner.meeting = open[c].at(0.5f);
+            corner.at = inCell(grid, corner.cell, corner.meeting);
+            if (!leaves) corner.meeting = corner.at;
             corner.settled = false;
             open[kept++] = open[c];
         }

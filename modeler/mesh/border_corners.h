@@ -17,10 +17,11 @@ struct CellCorner {
     Vec3i cell;
     size_t brick;
     uint32_t loop;
-    Vec3f at;              ///< inside the cell
-    Vec3f meeting;         ///< of its planes: `at`, or outside the cell
-    bool settled = false;  ///< looking again would move it no more
-    bool leaves = false;   ///< the pieces were found around a meeting outside the cell
+    Vec3f at;               ///< inside the cell
+    Vec3f meeting;          ///< of its planes: `at`, or outside the cell
+    bool settled = false;   ///< looking again would move it no more
+    bool isSmooth = false;  ///< no piece bends where it meets the next: planes don't tell where that is
+    bool leaves = false;    ///< the pieces were found around a meeting outside the cell
     std::vector<PiecePoint> planes;
     std::vector<uint32_t> labels;
     std::vector<Vec3f> means;  ///< by label: the middle of its nodes

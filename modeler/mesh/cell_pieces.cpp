@@ -1,6 +1,7 @@
 #include "modeler/mesh/cell_pieces.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 
@@ -16,6 +17,7 @@ constexpr float confirmShare = 0x1p-8f;  ///< of a cell times the slope: the fie
 constexpr float apartShare = 0.03f;      ///< of a cell, from a corner to each of its planes
 constexpr int surfaceSteps = 3;          ///< of Newton's method
 constexpr float flatCosine = 0.99999f;   ///< between the normals of pieces in one plane
+constexpr float smoothCosine = 0.9999f;  ///< between those of two pieces where they meet without a crease
 constexpr int flatParts = 7;             ///< of either side of the grid on which three of them are looked for
 constexpr int flatRounds = 4;
 constexpr double towardsMiddle = 1e-6;  ///< weight of the nodes' middle where planes leave a corner open
@@ -153,6 +155,22 @@ void CellPieces::addCorner(Loop& loop, const std::vector<LoopNode>& nodes) {
     corner.at = sum * (1.0f / static_cast<float>(corner.planes.size()));
 }
 
+/// Those around which no border is a crease, as on blends; they are looked for by labels alone.
+void CellPieces::findSmoothCorners() {
+    for (Corner& corner : corners_.list) {
+        const size_t count = corner.labels.size();
+        // Of each piece there are the planes at its first and its last break, which is the next one's first.
+        corner.isSmooth = count >= 3;
+        for (size_t k = 0; k < count && corner.isSmooth; ++k) {
+            const Vec3f own = normalized(corner.planes[2 * k + 1].gradient),
+                        next = normalized(corner.planes[2 * ((k + 1) % count)].gradient);
+            corner.isSmooth = dot(own, next) > smoothCosine;
+        }
+        corner.settled = corner.isSmooth;
+        corner.meeting = corner.at;
+    }
+}
+
 /// Moves a corner to where its planes meet, by least squares.
 void CellPieces::intersect(Corner& corner) const {
     const Vec3d middle = corner.at.as<double>();
@@ -180,7 +198,7 @@ bool CellPieces::meets(const Corner& corner) const {
 uint64_t CellPieces::moveToSurface(const BlockTapes& tapes, eval::Workspace& workspace) {
     std::vector<Corner*> apart;
     for (Corner& corner : corners_.list)
-        if (corner.meeting == corner.at && !meets(corner)) apart.push_back(&corner);
+        if (corner.meeting == corner.at && (corner.isSmooth || !meets(corner))) apart.push_back(&corner);
     for (int step = 0; step < surfaceSteps && !apart.empty(); ++step) {
         probes_.clear();
         for (const Corner* corner : apart) probes_.add(tapes, corner->brick, corner->at);
@@ -196,12 +214,14 @@ uint64_t CellPieces::moveToSurface(const BlockTapes& tapes, eval::Workspace& wor
     return apart.size() * surfaceSteps;
 }
 
-/// Corners of three pieces in one plane go to where their borders meet: the planes don't tell. That is looked for on a
-/// grid, in the square with all three again on a finer one. Returns how often the field was evaluated.
+/// Corners of three pieces in one plane, or of more without creases, go to where their borders meet: the planes don't
+/// tell. That is looked for on a grid, in the square with most of them again on a finer one. Returns how often the
+/// field was evaluated.
 uint64_t CellPieces::searchFlatCorners(const BlockTapes& tapes, eval::Workspace& workspace) {
     std::vector<FlatCorner> flat;
     for (Corner& corner : corners_.list)
-        if (corner.labels.size() == 3 && corner.meeting == corner.at && lieInOnePlane(corner.planes))
+        if (corner.isSmooth ||
+            (corner.labels.size() == 3 && corner.meeting == corner.at && lieInOnePlane(corner.planes)))
             flat.push_back(squareAround(corner));
     uint64_t evaluations = 0;
     for (int round = 0; round < flatRounds && !flat.empty(); ++round) {
@@ -227,7 +247,8 @@ uint64_t CellPieces::searchFlatCorners(const BlockTapes& tapes, eval::Workspace&
 
 /// Around all nodes of a corner's loop, in its plane.
 CellPieces::FlatCorner CellPieces::squareAround(Corner& corner) const {
-    const Vec3f normal = corner.planes[0].gradient;
+    Vec3f normal{};
+    for (const PiecePoint& plane : corner.planes) normal += normalized(plane.gradient);
     int axis = 0;
     for (int i = 1; i < 3; ++i)
         if (std::abs(normal[i]) > std::abs(normal[axis])) axis = i;
@@ -247,8 +268,8 @@ CellPieces::FlatCorner CellPieces::squareAround(Corner& corner) const {
     return {&corner, low, along(u), along(v)};
 }
 
-/// Puts a square of the grid with all three pieces in the place of all of it; false where none has. The grid's points
-/// are samples from `sample` on.
+/// Puts the square of the grid with most pieces, three or more, in the place of all of it; false where none has. The
+/// grid's points are samples from `sample` on.
 bool CellPieces::narrow(FlatCorner& flat, size_t sample) const {
     constexpr size_t row = flatParts + 1;
     const auto& labels = flat.corner->labels;
@@ -259,16 +280,19 @@ bool CellPieces::narrow(FlatCorner& flat, size_t sample) const {
         seen[i] = 0;
         for (size_t k = 0; k < labels.size(); ++k) seen[i] |= unsigned{point.label == labels[k]} << k;
     }
+    size_t best = 0;
+    int most = 2;
     for (size_t v = 0; v < flatParts; ++v)
         for (size_t u = 0; u < flatParts; ++u) {
             const size_t at = v * row + u;
-            if ((seen[at] | seen[at + 1] | seen[at + row] | seen[at + row + 1]) != 7) continue;
-            const float margin = 0.1f, share = (1 + 2 * margin) / flatParts;
-            flat.low = flat.place((float(u) - margin) / flatParts, (float(v) - margin) / flatParts);
-            flat.alongU = flat.alongU * share, flat.alongV = flat.alongV * share;
-            return true;
+            const int pieces = std::popcount(seen[at] | seen[at + 1] | seen[at + row] | seen[at + row + 1]);
+            if (pieces > most) best = at, most = pieces;
         }
-    return false;
+    if (most == 2) return false;
+    const float margin = 0.1f, share = (1 + 2 * margin) / flatParts;
+    flat.low = flat.place((float(best % row) - margin) / flatParts, (float(best / row) - margin) / flatParts);
+    flat.alongU = flat.alongU * share, flat.alongV = flat.alongV * share;
+    return true;
 }
 
 /// A meeting outside the cell counts where it lies on the surface, on one of the corner's pieces. Returns at how many
@@ -342,12 +366,14 @@ uint64_t CellPieces::placeCorners(const BlockTapes& tapes, const Grid& grid, eva
                                   uint32_t firstVertex) {
     grid_ = &grid;
     firstVertex_ = firstVertex;
-    for (Corner& corner : corners_.list) intersect(corner);
+    findSmoothCorners();
+    for (Corner& corner : corners_.list)
+        if (!corner.settled) intersect(corner);
     uint64_t evaluations = lookAtPlanes(tapes, workspace);
     if (const uint64_t searched = borderCorners_.place(corners_.list, tapes, grid, workspace); searched > 0)
         evaluations += searched + lookAtPlanes(tapes, workspace);  // creases may be round
-    evaluations += moveToSurface(tapes, workspace);
     evaluations += searchFlatCorners(tapes, workspace);
+    evaluations += moveToSurface(tapes, workspace);
     evaluations += confirmMeetings(tapes, workspace);
     writeCorners();
     return evaluations;

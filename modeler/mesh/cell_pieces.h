@@ -13,6 +13,7 @@
 #include "modeler/mesh/border_corners.h"
 #include "modeler/mesh/face_creases.h"
 #include "modeler/mesh/mesh.h"
+#include "modeler/mesh/small_polygon.h"
 
 namespace sgm::mesh {
 
@@ -100,6 +101,7 @@ private:
     void addSplit(Loop& loop, std::vector<LoopNode>& nodes);
     void addCorner(Loop& loop, const std::vector<LoopNode>& nodes);
     uint64_t confirmMeetings(const BlockTapes& tapes, eval::Workspace& workspace);
+    void findSmoothCorners();
     uint64_t moveToSurface(const BlockTapes& tapes, eval::Workspace& workspace);
     bool meets(const Corner& corner) const;
     uint64_t searchFlatCorners(const BlockTapes& tapes, eval::Workspace& workspace);
@@ -109,7 +111,6 @@ private:
     void intersect(Corner& corner) const;
     void writeCorners();
     bool liesInFace(Vec3f a, Vec3f b) const;
-    size_t bestEar(Vec3d normal) const;
     bool triangulatePolygon(const Polygon& polygon, PieceTriangles& out);
     bool triangulateLoop(const Loop& loop, PieceTriangles& out);
     bool crosses(const PieceTriangles& out, size_t firstTriangle) const;
@@ -125,8 +126,8 @@ private:
 
     const Grid* grid_ = nullptr;
     std::vector<LoopNode> nodes_, scratch_, rest_;
-    std::vector<size_t> breaks_;                    ///< in rest_
-    std::vector<std::pair<uint32_t, Vec3d>> ring_;  ///< what is left of a polygon: nodes and their places
+    std::vector<size_t> breaks_;  ///< in rest_
+    SmallPolygon shape_;          ///< of the polygon in work
     std::vector<Polygon> polygons_;
     std::vector<Loop> loops_;
     Corners corners_;

@@ -13,13 +13,6 @@ constexpr double leastSquare = 1e-16;  ///< of the sine between a plane and the 
 
 double square(Vec3d v) { return dot(v, v); }
 
-/// Twice the area of a triangle as far as it faces along unit `n`.
-double facing(Vec3d a, Vec3d b, Vec3d c, Vec3d n) { return dot(cross(b - a, c - a), n); }
-
-bool holds(Vec3d a, Vec3d b, Vec3d c, Vec3d p, Vec3d n) {
-    return facing(a, b, p, n) >= 0 && facing(b, c, p, n) >= 0 && facing(c, a, p, n) >= 0;
-}
-
 /// Whether a loop has two pieces along one crease, and the point amid that.
 bool isOneCrease(std::span<const LoopNode> nodes, Vec3f& middle) {
     int breaks = 0;
@@ -60,51 +53,22 @@ bool CellPieces::liesInFace(Vec3f a, Vec3f b) const {
     return false;
 }
 
-/// The place in ring_ of the best shaped ear, ring_.size() for none.
-size_t CellPieces::bestEar(Vec3d normal) const {
-    const size_t count = ring_.size();
-    size_t best = count;
-    double most = 0;
-    for (size_t i = 0; i < count; ++i) {
-        const size_t before = i == 0 ? count - 1 : i - 1, after = i + 1 == count ? 0 : i + 1;
-        const Vec3d a = ring_[before].second, b = ring_[i].second, c = ring_[after].second;
-        const double quality = facing(a, b, c, normal) / (square(b - a) + square(c - b) + square(a - c));
-        if (!(quality > most)) continue;
-        bool ear = !liesInFace(nodes_[ring_[before].first].at, nodes_[ring_[after].first].at);
-        for (size_t k = 0; k < count && ear; ++k)
-            ear = k == before || k == i || k == after || !holds(a, b, c, ring_[k].second, normal);
-        if (ear) best = i, most = quality;
-    }
-    return best;
-}
-
-/// Cuts ears off, the best shaped first. False where none is left that faces outward.
+/// False where no triangulation faces outward.
 bool CellPieces::triangulatePolygon(const Polygon& polygon, PieceTriangles& out) {
     Vec3d expected{};
-    ring_.clear();
+    shape_.clear();
     for (uint32_t i = polygon.first; i < polygon.end; ++i) {
-        ring_.emplace_back(i, nodes_[i].at.as<double>());
+        shape_.add(nodes_[i].at.as<double>());
         if (const PiecePoint& side = sideOf(nodes_[i], polygon.label); side.label == polygon.label)
             expected += normalized(side.gradient.as<double>());
     }
-    Vec3d sum{};
-    for (size_t i = 1; i + 1 < ring_.size(); ++i)
-        sum += cross(ring_[i].second - ring_[0].second, ring_[i + 1].second - ring_[0].second);
+    const Vec3d sum = shape_.doubleArea();
     if (!(dot(sum, expected) > 0)) return false;
     const Vec3d n = normalized(sum);
-    const Vec3f normal = n.as<float>();
     cell_.normals.push_back(n);
-    const auto cut = [&](size_t before, size_t at, size_t after) {
-        emit(nodes_[ring_[before].first], nodes_[ring_[at].first], nodes_[ring_[after].first], polygon, normal, out);
-    };
-    while (ring_.size() > 3) {
-        const size_t count = ring_.size(), best = bestEar(n);
-        if (best == count) return false;
-        cut((best + count - 1) % count, best, (best + 1) % count);
-        ring_.erase(ring_.begin() + static_cast<ptrdiff_t>(best));
-    }
-    if (!(facing(ring_[0].second, ring_[1].second, ring_[2].second, n) > 0)) return false;
-    cut(0, 1, 2);
+    const auto node = [&](size_t i) -> const LoopNode& { return nodes_[polygon.first + i]; };
+    if (!shape_.triangulate(n, [&](size_t i, size_t k) { return !liesInFace(node(i).at, node(k).at); })) return false;
+    for (const auto& [a, b, c] : shape_.triangles()) emit(node(a), node(b), node(c), polygon, n.as<float>(), out);
     return true;
 }
 

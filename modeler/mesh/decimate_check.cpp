@@ -104,7 +104,7 @@ bool DecimationJob::fits(uint32_t u, size_t target, size_t which, float toleranc
     } else {
         return false;
     }
-    if (!fan_.set(side.corners, side.normal, tolerance)) return false;
+    if (!fan_.set(side.corners, side.normal, side.leastFacing, tolerance)) return false;
     if (patch_.vertices[u].kind == Kind::Inner) {
         const Vec3f at = patch_.vertices[u].position;
         uOver_ = static_cast<uint16_t>(fan_.triangleOver(at));

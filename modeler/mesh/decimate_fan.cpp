@@ -5,12 +5,11 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr float steepest = 0.5f;  ///< cosine between a triangle and the plane of its star
-constexpr float needle = 1e-3f;   ///< doubled area by the square of the longest side
+constexpr float needle = 1e-3f;  ///< doubled area by the square of the longest side
 
 }  // namespace
 
-bool Fan::set(std::span<const Vec3f> corners, Vec3f normal, float tolerance) {
+bool Fan::set(std::span<const Vec3f> corners, Vec3f normal, float leastFacing, float tolerance) {
     const int n = static_cast<int>(corners.size());
     apex_ = corners[0], normal_ = normal, last_ = n - 2;
     for (int i = 1; i < n; ++i) arms_[i] = corners[i] - apex_;
@@ -18,7 +17,7 @@ bool Fan::set(std::span<const Vec3f> corners, Vec3f normal, float tolerance) {
         const Vec3f across = cross(arms_[i], arms_[i + 1]), edge = arms_[i + 1] - arms_[i];
         const float up = dot(across, normal), squared = dot(across, across);
         const float longest = std::max({dot(arms_[i], arms_[i]), dot(arms_[i + 1], arms_[i + 1]), dot(edge, edge)});
-        if (!(up > 0) || up * up < steepest * steepest * squared || up < needle * longest) return false;
+        if (!(up > 0) || up * up < leastFacing * leastFacing * squared || up < needle * longest) return false;
         planes_[i] = across / up;
         outer_[i] = normalized(cross(edge, normal));
         reach_[i] = dot(outer_[i], arms_[i]);

@@ -18,8 +18,9 @@ public:
     static constexpr int mostCorners = 32;
 
     /// Sets the polygon, 3 … mostCorners corners counter-clockwise seen against the unit vector `normal`; false where a
-    /// triangle of the fan would stand too steep on the plane across `normal`, or be a needle to a thousandth.
-    bool set(std::span<const Vec3f> corners, Vec3f normal, float tolerance);
+    /// triangle of the fan would face away from `normal` by a cosine below `leastFacing`, or be a needle to a
+    /// thousandth.
+    bool set(std::span<const Vec3f> corners, Vec3f normal, float leastFacing, float tolerance);
 
     /// The triangle that a point lies over, 1 … corners − 2; the first or the last one where it is beside the fan.
     int triangleOver(Vec3f p) const {

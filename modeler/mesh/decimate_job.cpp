@@ -11,6 +11,7 @@ constexpr int mostSweeps = 12;        ///< a step
 constexpr int mostTargets = 3;        ///< neighbours that a vertex is tried to move into
 constexpr float worthASweep = 0.01f;  ///< share of the vertices that the last sweep removed
 constexpr float bent = 0.5f;          ///< least cosine between a star's normal and its triangles'
+constexpr float even = 0.8f;          ///< the same of triangles that come, where those that go have it too
 constexpr float sliver = 1e-3f;       ///< doubled area by squared length below which a normal is rounding
 
 }  // namespace
@@ -115,6 +116,7 @@ bool DecimationJob::findNormals() {
             side.normal += across[i];
         }
         side.normal = normalized(side.normal);
+        side.leastFacing = even;
         for (size_t i = side.from; i < side.to; ++i) {
             const Vec3f n = across[i];
             const float twice = length(n);
@@ -123,6 +125,7 @@ bool DecimationJob::findNormals() {
                 if (twice > sliver * dot(edge, edge)) return false;
             }
             if (!(twice > 0)) continue;
+            side.leastFacing = std::max(bent, std::min(side.leastFacing, dot(n, side.normal) / twice));
             const float w = 1 / twice;  // n n^T / |n|: the plane's quadric by its area
             star_.quadric[0] += n.x * n.x * w, star_.quadric[1] += n.y * n.y * w, star_.quadric[2] += n.z * n.z * w;
             star_.quadric[3] += n.x * n.y * w, star_.quadric[4] += n.y * n.z * w, star_.quadric[5] += n.z * n.x * w;

@@ -48,6 +48,7 @@ private:
         size_t from,
             to;  ///< in the ring; the second side of a closed star ends at its size, which stands for its first
         Vec3f normal;
+        float leastFacing = 0;       ///< cosine between that and a triangle that comes
         std::vector<Vec3f> corners;  ///< of the polygon, the target first
         std::vector<uint32_t>
             triangles;  ///< half-edges of the star whose triangles the fan's take the place of, from 1 on

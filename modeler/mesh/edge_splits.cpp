@@ -10,11 +10,19 @@ namespace sgm::mesh {
 namespace {
 
 constexpr uint32_t noSplit = 0xffffffffu;
+constexpr double leastFacing = 0.7;  ///< cosine between a triangle that comes and the normals at its corners
 constexpr std::array unsplit{noSplit, noSplit, noSplit};
 
 Vec3d directionOf(std::span<const Vec3f> positions, const Triangle& t) {
     const Vec3d p = positions[t.x].as<double>();
     return cross(positions[t.y].as<double>() - p, positions[t.z].as<double>() - p);
+}
+
+/// The least cosine between a triangle's direction and the normals at its corners.
+double facingOf(Vec3d direction, const std::array<Vec3f, 3>& normals) {
+    const Vec3d face = normalized(direction);
+    return std::min(
+        {dot(face, normals[0].as<double>()), dot(face, normals[1].as<double>()), dot(face, normals[2].as<double>())});
 }
 
 }  // namespace
@@ -127,8 +135,11 @@ bool EdgeSplitter::leaveOutFaulty(std::span<const Part> parts) {
 }
 
 bool EdgeSplitter::isFolded(const Part& part) const {
-    return !(dot(directionOf(chunk_.positions, part.corners),
-                 directionOf(chunk_.positions, chunk_.triangles[part.from])) > 0);
+    const Vec3d own = directionOf(chunk_.positions, part.corners),
+                before = directionOf(chunk_.positions, chunk_.triangles[part.from]);
+    if (!(dot(own, before) > 0)) return true;
+    const double least = std::min(leastFacing, facingOf(before, normals_[part.from]));
+    return facingOf(own, part.normals) < least;
 }
 
 /// Puts parts in the place of what they come of.

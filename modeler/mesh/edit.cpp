@@ -70,7 +70,7 @@ Result<Mesh> decimate(const Mesh& mesh, double ratio, Progress* progress) {
 
 void correctNormals(Mesh& mesh) {
     constexpr float leastAgreement = .6f;  // cosine
-    constexpr float sliver = 1e-3f;        // height as a share of the longest edge
+    constexpr float sliver = 0.02f;        // height as a share of the longest edge
     const auto square = [](Vec3f v) { return dot(v, v); };
     std::vector<const Chunk*> owners;  // by vertex of the whole mesh
     owners.reserve(mesh.vertexCount());

@@ -48,12 +48,14 @@ struct LinearField {
     float value = 0;  ///< of the field at the point
 };
 
-/// Moves a point within the plane of the face to where its piece's field is zero; not where that runs along the face.
-inline void moveInFace(const FaceAxes& plane, PiecePoint& point, float value) {
+/// Moves a point within the plane of the face to where its piece's field is zero; false where that is nowhere, since
+/// the field doesn't change along the face.
+inline bool moveInFace(const FaceAxes& plane, PiecePoint& point, float value) {
     const double square = plane.dot(point.gradient, point.gradient);
-    if (!(square > 0)) return;
+    if (!(square > 0)) return value == 0;
     for (const int axis : {plane.u, plane.v})
         point.at[axis] -= static_cast<float>(value * point.gradient[axis] / square);
+    return true;
 }
 
 inline Vec3f between(Vec3f a, Vec3f b, double share) {

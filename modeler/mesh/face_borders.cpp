@@ -20,20 +20,14 @@ constexpr double gapMargin = 0x1.0p-7;    ///< of the line between a gap's ends,
 
 double shareOfPart(size_t k) { return static_cast<double>(k) / static_cast<double>(borderParts); }
 
-}  // namespace
-
-size_t FaceCreases::samplesOf(State state) {
-    switch (state) {
-        case State::Middle:
-        case State::Third:
-        case State::Below:
-            return 1;
-        case State::Border:
-            return borderParts - 1;
-        default:
-            return 2;
-    }
+/// The point nearest to `p` on the line between a gap's ends, a little away from both: it always lies in the face.
+Vec3f onLine(Vec3f from, Vec3f to, Vec3f p) {
+    const Vec3d way = (to - from).as<double>();
+    const double share = dot((p - from).as<double>(), way) / std::max(dot(way, way), 1e-300);
+    return between(from, to, std::clamp(share, gapMargin, 1 - gapMargin));
 }
+
+}  // namespace
 
 /// How far beside a border its pieces are looked at along the gap, metres: beyond where the fields of both tie, for
 /// there the wall between them has the point. The flatter the gap runs into the wall, the farther that is.
@@ -48,6 +42,7 @@ double FaceCreases::besideReach(const Gap& gap) const {
 void FaceCreases::searchBorder(Gap& gap, bool isFlat) {
     gap.state = State::Border;
     gap.rounds = 0;
+    gap.looks.isBorder = true;
     gap.looks.below = isFlat ? mostLooks : 0;
     gap.nearA.point = gap.a, gap.nearB.point = gap.b;
     gap.nearA.value = gap.nearB.value = 0;
@@ -110,20 +105,22 @@ bool FaceCreases::takeBeside(const FaceSegment& segment, Gap& gap, size_t sample
 }
 
 /// A point of a border's bracket, on the surface where that is at most so many metres away; on the line, with the
-/// piece before it, where the field isn't known.
-PiecePoint FaceCreases::inBracket(const FaceSegment& segment, const PiecePoint& before, double most,
-                                  size_t sample) const {
+/// piece before it, where the field isn't known. Whether its piece may reach the surface in the face: in seams inside
+/// the solid pieces show that don't.
+std::pair<PiecePoint, bool> FaceCreases::inBracket(const FaceSegment& segment, const PiecePoint& before, double most,
+                                                   size_t sample) const {
     float value;
     PiecePoint point = samples_.point(sample, value);
     if (!isKnown(value)) {
         const Vec3f at = point.at;
         point = before;
         point.at = at;
-        return point;
+        return {point, false};
     }
     const FaceAxes plane(segment.axis);
-    if (std::abs(value) <= most * plane.length(point.gradient)) moveInFace(plane, point, value);
-    return point;
+    const double slope = plane.length(point.gradient);
+    if (std::abs(value) <= most * slope) moveInFace(plane, point, value);
+    return {point, std::abs(value) <= 2 * grid_->cell_m * slope};
 }
 
 /// The bracket becomes that part of itself where the first piece ends.
@@ -133,12 +130,12 @@ void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sampl
     const bool isWide = bracket > mergedShare * grid_->cell_m;  // else the breaks beside a third piece become one
     for (size_t k = 1; k < borderParts; ++k) {
         const double most = shareOfPart(std::min(k, borderParts - k)) * bracket;
-        const PiecePoint point = inBracket(segment, gap.nearA.point, most, sample + k - 1);
+        const auto [point, mayCross] = inBracket(segment, gap.nearA.point, most, sample + k - 1);
         if (point.label == gap.a.label) {
             gap.nearA.point = point;
             continue;
         }
-        if (point.label != gap.b.label && gap.splits < mostSplits && isWide && mayLieAt(segment, point.at))
+        if (mayCross && point.label != gap.b.label && gap.splits < mostSplits && isWide && mayLieAt(segment, point.at))
             return split(g, point);
         if (point.label == gap.b.label)
             gap.nearB.point = point;
@@ -152,16 +149,9 @@ void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sampl
     }
     const Vec3f found = between(gap.nearA.point.at, gap.nearB.point.at, 0.5);
     const bool isInside = mayLieAt(segment, found);
-    gap.at = isInside ? found : onLine(gap, found);
+    gap.at = isInside ? found : onLine(gap.a.at, gap.b.at, found);
     if (!gap.leaves) gap.crossing = found, gap.leaves = !isInside;
     gap.state = State::Done;
-}
-
-/// The point nearest to `p` on the line between a gap's ends, a little away from both: it always lies in the face.
-Vec3f FaceCreases::onLine(const Gap& gap, Vec3f p) {
-    const Vec3d way = (gap.b.at - gap.a.at).as<double>();
-    const double share = dot((p - gap.a.at).as<double>(), way) / std::max(dot(way, way), 1e-300);
-    return between(gap.a.at, gap.b.at, std::clamp(share, gapMargin, 1 - gapMargin));
 }
 
 }  // namespace sgm::mesh

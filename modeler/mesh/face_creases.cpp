@@ -20,11 +20,7 @@ constexpr float settledShare = 1e-4f;       ///< of a cell, within which a creas
 constexpr float endMargin = 0x1.0p-12f;     ///< of a segment, kept free of breaks at its ends
 constexpr double monotoneShare = 0x1.0p-6;  ///< of a segment, between breaks
 constexpr float faceMargin = 0x1.0p-7f;     ///< of a cell, kept free of breaks at the sides of a face
-constexpr double parallelSquare = 1e-3;     ///< squared sine of the least angle of a crease outside its face
-constexpr double leavingReach = 8.0;        ///< of a cell, that a crossing may lie outside its face
-constexpr double stopShare = 0x1p-10;       ///< of a cell, between a crossing and the piece that ends its crease
 constexpr float thirdShare = 0.5f;          ///< of the field expected outside a third piece: how far it may be off
-constexpr float confirmShare = 0.0625f;     ///< of a cell times the slope: the field beside a confirmed crossing
 
 /// Whether a point looked at on the way to `end` lies near that one's piece, on the same side of it: within the solid,
 /// in seams between parts and in thin sheets, a piece shows with its derivative turned round.
@@ -77,76 +73,34 @@ uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Wor
         open_.push_back(static_cast<uint32_t>(gaps_.size()));
         gaps_.push_back(gap);
     }
-    uint64_t evaluations = 0;
-    while (!open_.empty()) {
-        samples_.clear();
-        for (const uint32_t g : open_) ask(segments[gaps_[g].segment], gaps_[g]);
-        evaluations += samples_.size();
-        samples_.evaluate(workspace);
-        next_.clear();
-        size_t sample = 0;
-        for (const uint32_t g : open_) {
-            const size_t first = sample;
-            sample += samplesOf(gaps_[g].state);
-            take(segments[gaps_[g].segment], g, first);
-            if (gaps_[g].state != State::Done) next_.push_back(g);
-        }
-        open_.swap(next_);
-    }
+    uint64_t evaluations = solveOpen(segments, workspace);
     evaluations += confirmCrossings(segments, workspace);
+    evaluations += searchSmoothBorders(segments, workspace);
     separate(segments, first);
     return evaluations;
 }
 
-/// Crossings outside their faces count where both pieces are found beside them, on the surface. Where a third piece
-/// ends the crease before, the crossing is moved to this side of its end and looked at again.
-uint64_t FaceCreases::confirmCrossings(const std::vector<FaceSegment>& segments, eval::Workspace& workspace) {
-    open_.clear();
-    for (uint32_t g = 0; g < gaps_.size(); ++g)
-        if (gaps_[g].leaves) open_.push_back(g);
+/// Looks at the open gaps until none is left. Returns how often the field was evaluated.
+uint64_t FaceCreases::solveOpen(const std::vector<FaceSegment>& segments, eval::Workspace& workspace) {
     uint64_t evaluations = 0;
-    for (int round = 0; round < 2 && !open_.empty(); ++round) {
-        samples_.clear();
+    std::vector<size_t> first;  // sample of each open gap
+    while (!open_.empty()) {
+        samples_.clear(), first.clear();
         for (const uint32_t g : open_) {
-            const size_t brick = segments[gaps_[g].segment].brick;
-            samples_.add(tapes_, brick, between(gaps_[g].crossing, gaps_[g].a.at, probeShare));
-            samples_.add(tapes_, brick, between(gaps_[g].crossing, gaps_[g].b.at, probeShare));
+            first.push_back(samples_.size());
+            ask(segments[gaps_[g].segment], gaps_[g]);
         }
         evaluations += samples_.size();
         samples_.evaluate(workspace);
         next_.clear();
         for (size_t i = 0; i < open_.size(); ++i) {
-            Gap& gap = gaps_[open_[i]];
-            gap.leaves = false;
-            bool confirmed = true;
-            for (size_t side = 0; side < 2; ++side) {
-                float value;
-                const PiecePoint probe = samples_.point(2 * i + side, value);
-                confirmed = confirmed && probe.label == (side == 0 ? gap.a : gap.b).label &&
-                            std::abs(value) <= confirmShare * grid_->cell_m * length(probe.gradient);
-                if (round > 0 || gap.leaves || probe.label == gap.a.label || probe.label == gap.b.label) continue;
-                gap.leaves = moveBeforeThird(gap, probe, value);
-            }
-            if (gap.leaves) next_.push_back(open_[i]);
-            gap.leaves = gap.leaves || confirmed;
+            const uint32_t g = open_[i];
+            take(segments[gaps_[g].segment], g, first[i]);
+            if (gaps_[g].state != State::Done) next_.push_back(g);
         }
         open_.swap(next_);
     }
     return evaluations;
-}
-
-/// Moves a crossing along its crease to a little before a third piece, the nearer the farther it lay beyond. Whether
-/// that is near enough.
-bool FaceCreases::moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const {
-    const Vec3d along = normalized(cross(gap.nearA.point.gradient.as<double>(), gap.nearB.point.gradient.as<double>()));
-    const Vec3d slope = third.gradient.as<double>();
-    const double rise = dot(slope, along);
-    if (!(std::abs(rise) > parallelSine * length(slope))) return false;
-    const double there = value + dot(slope, (gap.crossing - third.at).as<double>());
-    const double way = -there / rise, cell = grid_->cell_m;  // from the crossing to the end
-    const double before = stopShare * cell / (1 + std::abs(way) / cell);
-    gap.crossing += (along * (way + std::copysign(before, way))).as<float>();
-    return length(gap.crossing - gap.at) <= leavingReach * cell;
 }
 
 void FaceCreases::ask(const FaceSegment& segment, const Gap& gap) {
@@ -221,20 +175,6 @@ void FaceCreases::aim(const FaceSegment& segment, Gap& gap) {
     if (!first && length(gap.at - before) <= settledShare * grid_->cell_m) gap.state = State::Done;
 }
 
-/// The crease lies outside the face: the crossing is its point nearest to `from`, so that points keep their order along
-/// it.
-void FaceCreases::projectOntoCrease(Gap& gap, Vec3f from) const {
-    const Vec3d p = from.as<double>(), a = gap.nearA.point.gradient.as<double>(),
-                b = gap.nearB.point.gradient.as<double>();
-    const double aa = dot(a, a), bb = dot(b, b), ab = dot(a, b), det = aa * bb - ab * ab;
-    gap.leaves = false;
-    if (!(det > parallelSquare * aa * bb)) return;
-    const double fa = gap.nearA.value + dot(a, p - gap.nearA.point.at.as<double>());
-    const double fb = gap.nearB.value + dot(b, p - gap.nearB.point.at.as<double>());
-    gap.crossing = (p - a * ((fa * bb - fb * ab) / det) - b * ((fb * aa - fa * ab) / det)).as<float>();
-    gap.leaves = length(gap.crossing - from) <= leavingReach * grid_->cell_m;
-}
-
 /// Where two pieces cross outside the face, a third one lies between them that may show far from that: as a ridge above
 /// a slope that it runs into. Amid the gap its field may be the least below the surface alone, as of parts that touch
 /// there: so it is looked at again a little outside the place where it would be the surface.
@@ -244,8 +184,7 @@ void FaceCreases::takeMiddle(const FaceSegment& segment, Gap& gap, size_t sample
     float value;
     PiecePoint third = samples_.point(sample, value);
     if (gap.splits >= mostSplits || !isKnown(value) || third.label == gap.a.label || third.label == gap.b.label) return;
-    moveInFace(axes, third, value);
-    if (!moveAlongLine(segment, third)) return;
+    if (!moveInFace(axes, third, value) || !moveAlongLine(segment, third)) return;
     const double slope = axes.length(third.gradient), out = probeShare * double{grid_->cell_m};
     if (!(slope > 0)) return;
     for (const int axis : {axes.u, axes.v}) third.at[axis] += static_cast<float>(out * third.gradient[axis] / slope);
@@ -260,8 +199,7 @@ void FaceCreases::takeThird(const FaceSegment& segment, uint32_t g, size_t sampl
     PiecePoint third = samples_.point(sample, value);
     if (third.label != gap.wall.point.label || !(std::abs(value - gap.wall.value) < thirdShare * gap.wall.value))
         return;
-    moveInFace(FaceAxes(segment.axis), third, value);
-    if (moveAlongLine(segment, third)) split(g, third);
+    if (moveInFace(FaceAxes(segment.axis), third, value) && moveAlongLine(segment, third)) split(g, third);
 }
 
 /// Moves a point on a piece along the piece's line to the nearest place inside the face; false where the line misses
@@ -310,8 +248,7 @@ void FaceCreases::takeProbes(const FaceSegment& segment, uint32_t g, size_t samp
             gap.nearB = {probe, value};
         } else if (gap.splits < mostSplits) {
             PiecePoint third = probe;
-            moveInFace(FaceAxes(segment.axis), third, value);
-            if (mayLieAt(segment, third.at)) return split(g, third);
+            if (moveInFace(FaceAxes(segment.axis), third, value) && mayLieAt(segment, third.at)) return split(g, third);
             known = false;
         } else {
             known = false;

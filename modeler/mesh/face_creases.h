@@ -52,6 +52,7 @@ private:
         uint8_t rounds = 0, splits = 0;
         struct {
             uint8_t below = 0, beside = 0;                    ///< left, and taken
+            bool isBorder = false;                            ///< whether it was searched as one
         } looks;                                              ///< at a border's wall
         std::array<float, 2> shares{probeShare, probeShare};  ///< of the way to a and b, where these are looked for
         PiecePoint a, b;                                      ///< where the pieces are known
@@ -61,17 +62,18 @@ private:
         Vec3f crossing;       ///< of the two lines, before it was moved into the face
         bool leaves = false;  ///< the crossing lies outside the face, and both pieces were found there
     };
+    uint64_t solveOpen(const std::vector<FaceSegment>& segments, eval::Workspace& workspace);
     void ask(const FaceSegment& segment, const Gap& gap);
     void take(const FaceSegment& segment, uint32_t gap, size_t sample);
     void takeEnds(const FaceSegment& segment, Gap& gap, const PiecePoint& a, const PiecePoint& b);
     void takeMiddle(const FaceSegment& segment, Gap& gap, size_t sample);
     void takeThird(const FaceSegment& segment, uint32_t gap, size_t sample);
     void takeProbes(const FaceSegment& segment, uint32_t gap, size_t sample);
-    PiecePoint inBracket(const FaceSegment& segment, const PiecePoint& before, double most, size_t sample) const;
+    std::pair<PiecePoint, bool> inBracket(const FaceSegment& segment, const PiecePoint& before, double most,
+                                          size_t sample) const;
     void takeParts(const FaceSegment& segment, uint32_t gap, size_t sample);
     void aim(const FaceSegment& segment, Gap& gap);
     void projectOntoCrease(Gap& gap, Vec3f from) const;
-    static size_t samplesOf(State state);
     static void searchBorder(Gap& gap, bool isFlat = false);
     void askForBorder(const FaceSegment& segment, const Gap& gap);
     void takeBorder(const FaceSegment& segment, uint32_t gap, size_t sample);
@@ -79,12 +81,12 @@ private:
     bool takeBeside(const FaceSegment& segment, Gap& gap, size_t sample);
     double besideReach(const Gap& gap) const;
     bool meetWall(const FaceSegment& segment, Gap& gap, const LinearField& surface) const;
+    uint64_t searchSmoothBorders(const std::vector<FaceSegment>& segments, eval::Workspace& workspace);
     uint64_t confirmCrossings(const std::vector<FaceSegment>& segments, eval::Workspace& workspace);
     bool moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const;
     void split(uint32_t gap, const PiecePoint& between);
     Vec3f inFace(const FaceSegment& segment, Vec3f p) const;
     bool moveAlongLine(const FaceSegment& segment, PiecePoint& piece) const;
-    static Vec3f onLine(const Gap& gap, Vec3f p);
     bool mayLieAt(const FaceSegment& segment, Vec3f p) const;
     void arrange(const FaceSegment& segment);
     void separate(std::vector<FaceSegment>& segments, size_t first);

@@ -1,9 +1,10 @@
-// The normals that files get, from grammars whose faces coincide.
+// The normals that files get, from grammars whose faces coincide or blend.
 #include <gtest/gtest.h>
 
-#include "modeler/mesh/chunk.h"
-#include "modeler/mesh/corners.h"
+#include "modeler/eval/evaluate.h"
+#include "modeler/mesh/simplify.h"
 #include "tests/pipeline/crisp_model.h"
+#include "tests/pipeline/faces_of.h"
 
 namespace sgm::pipeline {
 namespace {
@@ -47,23 +48,75 @@ TEST(Normals, NoCornerOfAFileLooksThroughItsTriangle) {
     CrispModel crisp = crispModel(acrossGrid(std::move(model)), 100, context, 0);
     const auto mesh = crisp.edit({}, context);
     ASSERT_TRUE(mesh.ok());
-    const std::vector<mesh::Triangle> triangles = mesh::gatherTriangles(*mesh);
-    const mesh::CornerNormalTable corners = mesh::collectCornerNormals(*mesh);
-    std::vector<Vec3f> positions, normals;
-    for (const mesh::Chunk& c : mesh->chunks) {
-        positions.insert(positions.end(), c.positions.begin(), c.positions.end());
-        normals.insert(normals.end(), c.normals.begin(), c.normals.end());
-    }
+    const std::vector<Face> triangles = facesOf(*mesh);
     size_t through = 0;
-    for (size_t t = 0; t < triangles.size(); ++t)
-        for (int k = 0; k < 3; ++k) {
-            const Vec3f p = positions[triangles[t][0]];
-            const Vec3f face = cross(positions[triangles[t][1]] - p, positions[triangles[t][2]] - p);
-            const uint32_t own = corners.empty() ? mesh::noIndex : corners.of[t][k];
-            through += dot(face, own == mesh::noIndex ? normals[triangles[t][k]] : corners.normals[own]) < 0;
-        }
+    for (const Face& t : triangles)
+        for (const Vec3f& normal : t.normals) through += dot(t.across(), normal) < 0;
     EXPECT_GT(triangles.size(), 100u);
     EXPECT_EQ(through, 0u);
+}
+
+/// Where the pieces of a blend meet they don't bend, and the tangents of their curves in a cell's face cross outside
+/// it.
+struct Blend {
+    const char* name;
+    std::string text;
+    std::vector<int> resolutions;
+};
+const Blend blends[] = {
+    {"rings",
+     "grammar 2\n"
+     "start Horn -> cylinder size (.9m, .34m, .9m) : Joint\n"
+     "rule Joint repeat 6 -> + cylinder size (.85 ~> .6, .34, .85 ~> .6) at +y overlap .3 blend .1m : Joint\n",
+     {32, 96, 128}},
+    {"spheres",
+     "grammar 2\n"
+     "start A -> sphere size 1.6m color #d09a3c + sphere size 1m move (-.8, .5, .2) color #d03c6a blend .3m\n"
+     "           - sphere size .7m move (0, .7, .4) blend .15m\n",
+     {32, 48, 64}},
+};
+
+TEST(Normals, VerticesOfBlendsLieOnTheSurface) {
+    for (const Blend& blend : blends)
+        for (const int resolution : blend.resolutions) {
+            Context context{nullptr, 2};
+            CrispModel crisp = crispModel(blend.text, resolution, context, 0);
+            eval::Workspace workspace;
+            for (mesh::Chunk& c : crisp.mesh.chunks) {
+                for (const mesh::ConfinedVertex& v : c.confined) c.positions[v.vertex] = v.place;
+                for (const Vec3f& p : c.positions) {
+                    float value;
+                    eval::evaluate(crisp.model.tape, {&p.x, &p.y, &p.z, 1}, &value, workspace);
+                    EXPECT_LT(std::abs(value), .05f * crisp.grid.cell_m) << blend.name << ' ' << resolution;
+                }
+            }
+        }
+}
+
+TEST(Normals, OfBlendsFollowTheField) {
+    for (const Blend& blend : blends)
+        for (const int resolution : blend.resolutions) {
+            Context context{nullptr, 2};
+            CrispModel crisp = crispModel(blend.text, resolution, context, 0);
+            const float cell_m = crisp.grid.cell_m, speck_m2 = 1e-4f * cell_m * cell_m;
+            const eval::Tape tape = crisp.model.tape;
+            const auto mesh = crisp.edit({.tolerance_m = mesh::usualTolerance(cell_m)}, context);
+            ASSERT_TRUE(mesh.ok());
+            eval::Workspace workspace;
+            size_t elsewhere = 0;
+            for (const Face& t : facesOf(*mesh)) {
+                if (length(t.across()) < speck_m2) continue;
+                for (size_t k = 0; k < 3; ++k) {
+                    const Vec3f p = t.places[k] * .9f + t.middle() * .1f;  // on this side of a rim
+                    float value;
+                    Vec3f slope;
+                    eval::evaluateGradient(tape, {&p.x, &p.y, &p.z, 1}, &value, &slope.x, &slope.y, &slope.z,
+                                           workspace);
+                    elsewhere += dot(normalized(slope), t.normals[k]) < .87f;  // 30 degrees
+                }
+            }
+            EXPECT_LE(elsewhere, 3u) << blend.name << ' ' << resolution;  // one triangle
+        }
 }
 
 }  // namespace

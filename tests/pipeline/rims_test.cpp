@@ -9,6 +9,7 @@
 #include "modeler/mesh/corners.h"
 #include "modeler/mesh/validate.h"
 #include "tests/pipeline/crisp_model.h"
+#include "tests/pipeline/faces_of.h"
 
 namespace sgm::pipeline {
 namespace {
@@ -20,31 +21,14 @@ mesh::Mesh usualMesh(const std::string& text, int resolution) {
     return made.edit({}, context).value();
 }
 
-struct Face {
-    Vec3f middle, normal;
-    float area_m2;
-};
-
 /// Calls `visit` with each triangle and the normal of each of its corners, but for slivers.
 template <class Visit>
-void eachFace(const mesh::Mesh& mesh, const Visit& visit) {
-    const auto triangles = mesh::gatherTriangles(mesh);
-    const mesh::CornerNormalTable corners = mesh::collectCornerNormals(mesh);
-    std::vector<Vec3f> positions, normals;
-    for (const mesh::Chunk& c : mesh.chunks) {
-        positions.insert(positions.end(), c.positions.begin(), c.positions.end());
-        normals.insert(normals.end(), c.normals.begin(), c.normals.end());
-    }
-    for (size_t t = 0; t < triangles.size(); ++t) {
-        const Vec3f a = positions[triangles[t].x], b = positions[triangles[t].y], c = positions[triangles[t].z];
-        const Vec3f across = cross(b - a, c - a);
+void eachCorner(const mesh::Mesh& mesh, const Visit& visit) {
+    for (const Face& face : facesOf(mesh)) {
+        const auto& [a, b, c] = face.places;
         const float longest = std::max({length(b - a), length(c - b), length(a - c)});
-        if (length(across) < .02f * longest * longest) continue;
-        for (int k = 0; k < 3; ++k) {
-            const bool isOwn = !corners.empty() && corners.of[t][k] != mesh::noIndex;
-            visit(Face{(a + b + c) * (1.0f / 3), normalized(across), length(across) / 2},
-                  isOwn ? corners.normals[corners.of[t][k]] : normals[triangles[t][k]]);
-        }
+        if (length(face.across()) < .02f * longest * longest) continue;
+        for (const Vec3f& normal : face.normals) visit(face, normal);
     }
 }
 
@@ -52,8 +36,9 @@ TEST(Rims, OfDrumsLeaveNormalsOfTheWalls) {
     const mesh::Mesh mesh = usualMesh(
         "start A -> cylinder size (4.2, 3, 4.2) + cylinder size (7m, .4m, 7m) at +y + cylinder size (9, 15, 9) at -y\n",
         96);
-    eachFace(mesh, [](const Face& face, Vec3f normal) {
-        EXPECT_GT(dot(face.normal, normal), .6f) << face.middle.x << ' ' << face.middle.y << ' ' << face.middle.z;
+    eachCorner(mesh, [](const Face& face, Vec3f normal) {
+        const Vec3f at = face.middle();
+        EXPECT_GT(dot(normalized(face.across()), normal), .6f) << at.x << ' ' << at.y << ' ' << at.z;
     });
 }
 
@@ -62,11 +47,12 @@ TEST(Rims, OfDomesKeepTheNormalsOfTheirSegments) {
         usualMesh("start A -> footprint round(48, 6m) extrude 4m B\nrule B -> domeRoof size (100%, 5m, 100%)\n", 128);
     // Of a vertex on a crease whose block has no other part of it the piece isn't asked for.
     double all_m2 = 0, others_m2 = 0;
-    eachFace(mesh, [&](const Face& face, Vec3f normal) {
-        if (std::abs(face.normal.y) > .9f) return;
-        const double across = std::atan2(face.normal.x, face.normal.z) - std::atan2(normal.x, normal.z);
-        all_m2 += face.area_m2;
-        if (std::abs(std::remainder(across, 2 * pi)) > radians(3)) others_m2 += face.area_m2;  // a segment spans 7.5
+    eachCorner(mesh, [&](const Face& face, Vec3f normal) {
+        const Vec3f own = normalized(face.across());
+        if (std::abs(own.y) > .9f) return;
+        const double apart = std::atan2(own.x, own.z) - std::atan2(normal.x, normal.z), area_m2 = length(face.across());
+        all_m2 += area_m2 / 2;
+        if (std::abs(std::remainder(apart, 2 * pi)) > radians(3)) others_m2 += area_m2 / 2;  // a segment spans 7.5
     });
     EXPECT_GT(all_m2, 100);
     EXPECT_LT(others_m2, 1e-4 * all_m2);
