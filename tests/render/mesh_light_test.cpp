@@ -6,6 +6,7 @@
 #include "tests/render/gpu_fixture.h"
 #include "tests/render/scenes.h"
 #include "viewer/render/draw.h"
+#include "viewer/render/mesh_scene.h"
 #include "viewer/render/scene.h"
 
 namespace sgm::render::test {
@@ -74,6 +75,28 @@ TEST_F(MeshLightPicture, ACornerBesideTheEyeIsWhole) {
     const double sunny = corner.brightness(Vec3d{3.85, .2, 2.5});
     for (const Vec3d place : {Vec3d{3.9, 1.05, 2.5}, {3.7, .95, 2.5}, {3.9, .9, 2.5}})
         EXPECT_NEAR(corner.brightness(place), sunny, .1 * sunny) << place.x << ' ' << place.y;
+}
+
+/// The sun's middle is hidden by the foot of the wall, and by a higher one before it.
+TEST_F(MeshLightPicture, TheFootOfAThinWallHasNoSpeckOfSun) {
+    std::vector<mesh::Chunk> walls{
+        box({-4, -1.125, -2.5}, {-3.95, 1.125, 2.5}), box({3.95, -1.125, -2.5}, {4, 1.125, 2.5}),
+        box({-3.95, -1.125, -2.5}, {3.95, 1.125, -2.45}), box({-3.95, -1.125, 2.45}, {3.95, 1.125, 2.5})};
+    const Drawn court(std::move(walls), {{6.5, 3, 5.2}, {4, 0, 1}, .8});
+    for (double z = -1.5; z < 1.8; z += .05) {
+        const double here = court.brightness(Vec3d{4.1, -1.125, z}),
+                     next = court.brightness(Vec3d{4.1, -1.125, z + .05});
+        EXPECT_NEAR(here, next, 4) << z;
+    }
+}
+
+/// Few directions of the sky show as rings on the ground.
+TEST_F(MeshLightPicture, FineMeshesHaveDirectionsOfTheSkyEnough) {
+    const auto gpu = GpuContext::create();
+    ASSERT_TRUE(gpu.ok());
+    EXPECT_GE(skyMapsFor(200'000, MeshScene::skyOfPictures), 40u);
+    EXPECT_EQ(skyMapsFor(1'000, MeshScene::skyOfPictures), MeshScene::skyOfPictures.most);
+    EXPECT_EQ(skyMapsFor(1'000'000'000, MeshScene::skyOfPictures), leastSkyMaps);
 }
 
 TEST_F(MeshLightPicture, LightOfTheSkyHasNoSteps) {

@@ -27,7 +27,7 @@ Result<MeshPainter> MeshPainter::create(const mesh::Mesh& mesh, const Provenance
     auto programs = MeshPrograms::create();
     if (!programs) return programs.error();
     auto parts = std::shared_ptr<Parts>(
-        new Parts{std::move(*gpu), MeshScene(*prepared, std::move(*programs), MeshScene::skyMapsOfPictures)});
+        new Parts{std::move(*gpu), MeshScene(*prepared, std::move(*programs), MeshScene::skyOfPictures)});
     if (Status status = parts->scene.light(progress); !status) return status.error();
     return MeshPainter(std::move(parts));
 }

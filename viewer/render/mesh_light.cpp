@@ -59,10 +59,11 @@ Matrix4 LightBox::matrix(double lo, double hi) const {
     return matrix;
 }
 
-size_t skyMapsFor(size_t triangles, size_t most) {
+size_t skyMapsFor(size_t triangles, SkyBudget budget) {
     // Software draws some 3 million triangles a second (docs/lab/pictures.md).
-    const size_t drawn = softwareGl() ? size_t{5} << 19 : size_t{24} << 20;
-    return std::clamp(drawn / std::max<size_t>(triangles, 1), leastSkyMaps, most);
+    const double drawn = budget.seconds * (softwareGl() ? 2.6e6 : 25e6);
+    const auto count = static_cast<size_t>(drawn / static_cast<double>(std::max<size_t>(triangles, 1)));
+    return std::clamp(count, leastSkyMaps, budget.most);
 }
 
 MeshLight::MeshLight(const Box3f& bounds, size_t skyCount) : bounds_(bounds), skyCount_(skyCount) {

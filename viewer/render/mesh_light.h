@@ -66,8 +66,14 @@ private:
     Buffer skyMatrices_;
 };
 
-/// As many directions of the sky, `most` at most, as the driver draws so many triangles from in a second or less.
-size_t skyMapsFor(size_t triangles, size_t most);
+/// How many directions sample the sky: `most` at most, fewer where drawing the mesh from them takes longer.
+struct SkyBudget {
+    size_t most;
+    double seconds;
+};
+
+/// As many directions of the sky as the driver draws so many triangles from within a budget.
+size_t skyMapsFor(size_t triangles, SkyBudget budget);
 
 /// The least number of directions.
 inline constexpr size_t leastSkyMaps = 12;

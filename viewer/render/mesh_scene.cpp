@@ -161,7 +161,7 @@ Result<std::shared_ptr<const MeshPrograms>> MeshPrograms::create() {
     return std::shared_ptr<const MeshPrograms>(programs);
 }
 
-MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs, size_t mostSkyMaps)
+MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs, SkyBudget sky)
     : programs_(std::move(programs)),
       bounds_(mesh.bounds),
       triangles_(TriangleBuffers::of(mesh.positions, mesh.normals, mesh.curvatures, mesh.triangles)),
@@ -170,7 +170,7 @@ MeshScene::MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshProgram
       hardEdges_(mesh.hardEdges),
       materials_(uploadMaterials(mesh.materials)),
       textured_(!mesh.textures.frames.empty()),
-      light_(bounds_, skyMapsFor(triangleCount_, mostSkyMaps)) {
+      light_(bounds_, skyMapsFor(triangleCount_, sky)) {
     if (!textured_) return;
     frameOfTriangle_ = TexelBuffer::of(mesh.textures.frameOfTriangle, 1);
     frames_ = Buffer::of<MeshTextures::Frame>(mesh.textures.frames);

@@ -53,10 +53,9 @@ struct Subsample {
 class MeshScene {
 public:
     /// Directions from which light of the sky is sampled: fewer in a window, where every frame samples them all.
-    static constexpr size_t skyMapsOfWindows = 40, skyMapsOfPictures = 128;
+    static constexpr SkyBudget skyOfWindows{40, 1}, skyOfPictures{128, 4};
 
-    MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs,
-              size_t mostSkyMaps = skyMapsOfWindows);
+    MeshScene(const PreparedMesh& mesh, std::shared_ptr<const MeshPrograms> programs, SkyBudget sky = skyOfWindows);
     /// Of triangles that a shader has made, with the owner of each: all of one component, a piece a part, without
     /// curvature and hard edges.
     MeshScene(GpuTriangles triangles, std::span<const OriginId> owners, const Box3f& bounds,

@@ -19,11 +19,13 @@ bool isWithin(vec2 at, float margin) { return all(greaterThan(at, vec2(margin)))
 
 vec2 turned(float angle) { return vec2(cos(angle), sin(angle)); }
 
+const float sunRadius = 0.035;   // radians
+const float leastHeight = 10.0;  // of what casts a shadow, times how far it is aside: lower is the surface itself
+
 /// Share of the sun's disc that p sees: the mean height of what stands before it sets how soft the edge is
-/// (Fernando, "Percentage-Closer Soft Shadows", 2005), over points of Vogel's spiral.
+/// (Fernando, "Percentage-Closer Soft Shadows", 2005), over points of Vogel's spiral. Points at which something rises a
+/// little tell nothing where others do: that may be the surface itself, or the foot of what hides the sun.
 float sunlightAt(vec3 p, vec3 normal) {
-    const float sunRadius = 0.035;   // radians
-    const float leastHeight = 10.0;  // of what casts a shadow, times how far it is aside: lower is the surface itself
     const int searched = 16, asked = 32;
     for (int map = 0; map < sunCount; ++map) {
         float span = sunSpan[map], texel = span / float(textureSize(sunMaps, 0).x), layer = float(sunCount - 1 - map);
@@ -41,13 +43,14 @@ float sunlightAt(vec3 p, vec3 normal) {
             }
         }
         if (blockers == 0.0) return 1.0;
-        float radius = clamp(sunRadius * height / blockers, 1.2 * texel, search), open = 0.0;
+        float radius = clamp(sunRadius * height / blockers, 1.2 * texel, search), open = 0.0, hidden = 0.0;
         for (int i = 0; i < asked; ++i) {
             float aside = radius * sqrt((float(i) + 0.5) / float(asked));
             float above = (at.z - texture(sunMaps, vec3(at.xy + aside / span * turned(turn + float(i) * 2.399963), layer)).x) * mapSpan;
-            open += above > max(0.25 * texel, leastHeight * (aside - texel)) ? 0.0 : 1.0;
+            if (above > max(0.25 * texel, leastHeight * (aside - texel))) hidden += 1.0;
+            else if (above <= 0.25 * texel) open += 1.0;
         }
-        return open / float(asked);
+        return hidden == 0.0 ? 1.0 : open / (open + hidden);
     }
     return 1.0;
 }
