@@ -12,7 +12,6 @@ constexpr float sameCosine = 0.9999f;     ///< between the normals of two pieces
 constexpr float leastSine = 0.1f;         ///< between the planes that make a crease
 constexpr float acrossCosine = 0.01f;     ///< between the crease and the normals: more tells where along it
 constexpr float besideShare = 0x1.0p-7f;  ///< of a cell: how far beside the crease the pieces are looked at
-constexpr float cornerReach = 8;          ///< of a cell, that a corner may lie outside its cell
 constexpr size_t linePoints = 9;          ///< looked at along the crease in a round
 constexpr int lineRounds = 5;
 
@@ -41,7 +40,8 @@ std::array<float, 2> besideBox(Vec3f p, Vec3f d, const Box3f& box) {
 /// nothing where the planes tell the corner's place.
 std::optional<BorderCorners::OnCrease> BorderCorners::creaseOf(CellCorner& corner, const Grid& grid) {
     const size_t n = corner.labels.size();
-    if (n < 3 || corner.isSmooth || length(corner.meeting - corner.at) > cornerReach * grid.cell_m) return std::nullopt;
+    if (n < 3 || corner.isSmooth || length(corner.meeting - corner.at) > CellCorner::reach * grid.cell_m)
+        return std::nullopt;
     std::vector<Vec3f> normals(n);
     for (size_t k = 0; k < n; ++k)
         for (const PiecePoint& plane : corner.planes)

@@ -14,6 +14,8 @@ namespace sgm::mesh {
 
 /// A point in a cell where three pieces or more meet.
 struct CellCorner {
+    static constexpr float reach = 8;  ///< of a cell, that it may lie outside its cell
+
     Vec3i cell;
     size_t brick;
     uint32_t loop;

@@ -12,13 +12,12 @@ constexpr uint32_t cornerVertex = 0xffffffffu;  ///< stands for a loop's corner 
 constexpr float probeShare = 0.0625f;
 constexpr int cornerRounds = 3;
 constexpr float settledShare = 1e-4f;    ///< of a cell, within which a corner may still move
-constexpr float leavingReach = 8;        ///< of a cell, that a corner may lie outside its cell
 constexpr float confirmShare = 0x1p-8f;  ///< of a cell times the slope: the field at a confirmed corner
 constexpr float apartShare = 0.03f;      ///< of a cell, from a corner to each of its planes
 constexpr int surfaceSteps = 3;          ///< of Newton's method
 constexpr float flatCosine = 0.99999f;   ///< between the normals of pieces in one plane
 constexpr float smoothCosine = 0.9999f;  ///< between those of two pieces where they meet without a crease
-constexpr int flatParts = 7;             ///< of either side of the grid on which three of them are looked for
+constexpr int flatParts = 7;             ///< of either side of the grid on which corners are looked for
 constexpr int flatRounds = 4;
 constexpr double towardsMiddle = 1e-6;  ///< weight of the nodes' middle where planes leave a corner open
 
@@ -301,7 +300,7 @@ uint64_t CellPieces::confirmMeetings(const BlockTapes& tapes, eval::Workspace& w
     probes_.clear();
     for (Corner& corner : corners_.list) {
         corner.leaves =
-            corner.meeting != corner.at && length(corner.meeting - corner.at) <= leavingReach * grid_->cell_m;
+            corner.meeting != corner.at && length(corner.meeting - corner.at) <= Corner::reach * grid_->cell_m;
         if (corner.leaves) probes_.add(tapes, corner.brick, corner.meeting);
     }
     probes_.evaluate(workspace);
@@ -327,7 +326,7 @@ uint64_t CellPieces::lookAtPlanes(const BlockTapes& tapes, eval::Workspace& work
         probes_.clear();
         for (const Corner& corner : corners_.list) {
             if (corner.settled) continue;
-            const bool isNear = length(corner.meeting - corner.at) <= leavingReach * cell_m;
+            const bool isNear = length(corner.meeting - corner.at) <= Corner::reach * cell_m;
             const Vec3f from = round > 0 && isNear ? corner.meeting : corner.at;
             for (const Vec3f& mean : corner.means) probes_.add(tapes, corner.brick, from + (mean - from) * probeShare);
         }
