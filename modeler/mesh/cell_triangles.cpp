@@ -7,9 +7,10 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr uint32_t mostSmall = 6;      ///< nodes of a polygon whose ears lie beside each other
-constexpr int mostTries = 1024;        ///< places for the middles of fans in one cell
-constexpr double leastSquare = 1e-16;  ///< of the sine between a plane and the way to a point beside it
+constexpr uint32_t mostSmall = 6;       ///< nodes of a polygon whose ears lie beside each other
+constexpr int mostTries = 1024;         ///< places for the middles of fans in one cell
+constexpr double flatNormals = 0.9999;  ///< length of the mean of a flat piece's normals
+constexpr double leastSquare = 1e-16;   ///< of the sine between a plane and the way to a point beside it
 
 double square(Vec3d v) { return dot(v, v); }
 
@@ -56,18 +57,22 @@ bool CellPieces::liesInFace(Vec3f a, Vec3f b) const {
 /// False where no triangulation faces outward.
 bool CellPieces::triangulatePolygon(const Polygon& polygon, PieceTriangles& out) {
     Vec3d expected{};
+    double count = 0;  // of normals
     shape_.clear();
     for (uint32_t i = polygon.first; i < polygon.end; ++i) {
         shape_.add(nodes_[i].at.as<double>());
         if (const PiecePoint& side = sideOf(nodes_[i], polygon.label); side.label == polygon.label)
-            expected += normalized(side.gradient.as<double>());
+            expected += normalized(side.gradient.as<double>()), ++count;
     }
     const Vec3d sum = shape_.doubleArea();
     if (!(dot(sum, expected) > 0)) return false;
     const Vec3d n = normalized(sum);
     cell_.normals.push_back(n);
     const auto node = [&](size_t i) -> const LoopNode& { return nodes_[polygon.first + i]; };
-    if (!shape_.triangulate(n, [&](size_t i, size_t k) { return !liesInFace(node(i).at, node(k).at); })) return false;
+    // Where a corner of a flat piece is off its plane, the best ears leave most of the piece in it.
+    const bool isCurved = length(expected) < flatNormals * count;
+    const auto mayJoin = [&](size_t i, size_t k) { return !liesInFace(node(i).at, node(k).at); };
+    if (!shape_.triangulate(n, isCurved, mayJoin)) return false;
     for (const auto& [a, b, c] : shape_.triangles()) emit(node(a), node(b), node(c), polygon, n.as<float>(), out);
     return true;
 }

@@ -8,15 +8,16 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr int mostLooks = 2;              ///< times that the field is looked at below a border
-constexpr double depthShare = 0.5625;     ///< of a bracket's length: how far below its middle
-constexpr double besideShare = 0x1.0p-9;  ///< of a cell, between a border and where its sides are looked at
-constexpr double tiesReach = 2;           ///< of the margin of ties: at least as far as that from the wall
-constexpr double leastRise = 0.125;       ///< of a gap into its wall, a metre: flatter ones are looked at as for that
-constexpr int besideRounds = 3;           ///< times that both sides are looked at, as the surface may bend
-constexpr size_t borderParts = 4;         ///< of a border's bracket, one of which is the next: few rounds fill vectors
-constexpr int borderRounds = 6;           ///< 4^-6 of a segment is left
-constexpr double gapMargin = 0x1.0p-7;    ///< of the line between a gap's ends, kept free of its break
+constexpr int mostLooks = 2;               ///< times that the field is looked at below a border
+constexpr double depthShare = 0.5625;      ///< of a bracket's length: how far below its middle
+constexpr double besideShare = 0x1.0p-9;   ///< of a cell, between a border and where its sides are looked at
+constexpr double tiesReach = 2;            ///< of the margin of ties: at least as far as that from the wall
+constexpr double leastRise = 0.125;        ///< of a gap into its wall, a metre: flatter ones are looked at as for that
+constexpr int besideRounds = 3;            ///< times that both sides are looked at, as the surface may bend
+constexpr size_t borderParts = 4;          ///< of a border's bracket, one of which is the next: few rounds fill vectors
+constexpr int borderRounds = 6;            ///< 4^-6 of a segment is left
+constexpr float parallelCosine = 0.9999f;  ///< between two planes that have no crease
+constexpr double gapMargin = 0x1.0p-7;     ///< of the line between a gap's ends, kept free of its break
 
 double shareOfPart(size_t k) { return static_cast<double>(k) / static_cast<double>(borderParts); }
 
@@ -128,6 +129,8 @@ void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sampl
     Gap& gap = gaps_[g];
     const double bracket = length((gap.nearB.point.at - gap.nearA.point.at).as<double>());
     const bool isWide = bracket > mergedShare * grid_->cell_m;  // else the breaks beside a third piece become one
+    // Between parallel planes something has to lie, which any third piece tells.
+    const bool isStep = dot(normalized(gap.a.gradient), normalized(gap.b.gradient)) > parallelCosine;
     for (size_t k = 1; k < borderParts; ++k) {
         const double most = shareOfPart(std::min(k, borderParts - k)) * bracket;
         const auto [point, mayCross] = inBracket(segment, gap.nearA.point, most, sample + k - 1);
@@ -135,8 +138,8 @@ void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sampl
             gap.nearA.point = point;
             continue;
         }
-        if (mayCross && point.label != gap.b.label && gap.splits < mostSplits && isWide && mayLieAt(segment, point.at))
-            return split(g, point);
+        const bool isThird = point.label != gap.b.label && (mayCross || isStep);
+        if (isThird && gap.splits < mostSplits && isWide && mayLieAt(segment, point.at)) return split(g, point);
         if (point.label == gap.b.label)
             gap.nearB.point = point;
         else

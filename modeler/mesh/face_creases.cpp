@@ -76,6 +76,7 @@ uint64_t FaceCreases::solve(const BlockTapes& tapes, const Grid& grid, eval::Wor
     uint64_t evaluations = solveOpen(segments, workspace);
     evaluations += confirmCrossings(segments, workspace);
     evaluations += searchSmoothBorders(segments, workspace);
+    evaluations += lookBesideTies(segments, workspace);
     separate(segments, first);
     return evaluations;
 }

@@ -84,7 +84,7 @@ private:
     bool meetWall(const FaceSegment& segment, Gap& gap, const LinearField& surface) const;
     uint64_t searchSmoothBorders(const std::vector<FaceSegment>& segments, eval::Workspace& workspace);
     uint64_t confirmCrossings(const std::vector<FaceSegment>& segments, eval::Workspace& workspace);
-    bool moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const;
+    uint64_t lookBesideTies(const std::vector<FaceSegment>& segments, eval::Workspace& workspace);
     void split(uint32_t gap, const PiecePoint& between);
     Vec3f inFace(const FaceSegment& segment, Vec3f p) const;
     bool moveAlongLine(const FaceSegment& segment, PiecePoint& piece) const;

@@ -1,5 +1,6 @@
 // Creases that leave the faces of cells: whether pieces cross where their lines do.
 #include <cmath>
+#include <optional>
 
 #include "modeler/mesh/face_creases.h"
 
@@ -13,6 +14,8 @@ constexpr float leastTurned = 1e-3f;       ///< of that, between either end and 
 constexpr float smoothBorder = 0.9999f;    ///< cosine between the pieces beside a border that is no crease
 constexpr double stopShare = 0x1p-10;      ///< of a cell, between a crossing and the piece that ends its crease
 constexpr float confirmedShare = 0.0625f;  ///< of a cell times the slope: the field beside a confirmed crossing
+constexpr float otherPiece = 0.99f;        ///< cosine to the other end, from which on a side may show that one's slope
+constexpr float ownPiece = 0.95f;          ///< and to its own end, up to which
 
 /// Whether the surface turns from one end of a gap to the other, and doesn't bend at the border amid that. Within the
 /// margin of ties one piece shows with the other's derivative, which doesn't turn where both are flat.
@@ -21,6 +24,25 @@ bool isSmooth(const PiecePoint& begin, const PiecePoint& before, const PiecePoin
                 b = normalized(behind.gradient);
     const float apart = 1 - dot(from, to), turned = apart * leastTurned;
     return apart < farthestApart && 1 - dot(from, a) > turned && 1 - dot(b, to) > turned && dot(a, b) > smoothBorder;
+}
+
+/// A crossing moved along its crease to a little before a third piece, the nearer the farther it lay beyond; none where
+/// the crease runs along that one.
+std::optional<Vec3f> beforeThird(Vec3f crossing, Vec3f slopeA, Vec3f slopeB, const LinearField& third, double cell_m) {
+    const Vec3d along = normalized(cross(slopeA.as<double>(), slopeB.as<double>()));
+    const Vec3d slope = third.point.gradient.as<double>();
+    const double rise = dot(slope, along);
+    if (!(std::abs(rise) > parallelSine * length(slope))) return std::nullopt;
+    const double there = third.value + dot(slope, (crossing - third.point.at).as<double>());
+    const double way = -there / rise;  // from the crossing to the end
+    const double before = stopShare * cell_m / (1 + std::abs(way) / cell_m);
+    return crossing + (along * (way + std::copysign(before, way))).as<float>();
+}
+
+/// Whether a side of a break may show with the derivative of the piece across it.
+bool mayShowOther(Vec3f side, Vec3f own, Vec3f other) {
+    const Vec3f n = normalized(side);
+    return dot(n, normalized(other)) > otherPiece && dot(n, normalized(own)) < ownPiece;
 }
 
 }  // namespace
@@ -66,7 +88,11 @@ uint64_t FaceCreases::confirmCrossings(const std::vector<FaceSegment>& segments,
                 confirmed = confirmed && probe.label == (side == 0 ? gap.a : gap.b).label &&
                             std::abs(value) <= confirmedShare * grid_->cell_m * length(probe.gradient);
                 if (round > 0 || gap.leaves || probe.label == gap.a.label || probe.label == gap.b.label) continue;
-                gap.leaves = moveBeforeThird(gap, probe, value);
+                const auto moved = beforeThird(gap.crossing, gap.nearA.point.gradient, gap.nearB.point.gradient,
+                                               {probe, value}, grid_->cell_m);
+                if (!moved) continue;
+                gap.crossing = *moved;
+                gap.leaves = length(gap.crossing - gap.at) <= crossingReach * grid_->cell_m;
             }
             if (gap.leaves) next_.push_back(open_[i]);
             gap.leaves = gap.leaves || confirmed;
@@ -100,18 +126,31 @@ uint64_t FaceCreases::searchSmoothBorders(const std::vector<FaceSegment>& segmen
     return evaluations;
 }
 
-/// Moves a crossing along its crease to a little before a third piece, the nearer the farther it lay beyond. Whether
-/// that is near enough.
-bool FaceCreases::moveBeforeThird(Gap& gap, const PiecePoint& third, float value) const {
-    const Vec3d along = normalized(cross(gap.nearA.point.gradient.as<double>(), gap.nearB.point.gradient.as<double>()));
-    const Vec3d slope = third.gradient.as<double>();
-    const double rise = dot(slope, along);
-    if (!(std::abs(rise) > parallelSine * length(slope))) return false;
-    const double there = value + dot(slope, (gap.crossing - third.at).as<double>());
-    const double way = -there / rise, cell = grid_->cell_m;  // from the crossing to the end
-    const double before = stopShare * cell / (1 + std::abs(way) / cell);
-    gap.crossing += (along * (way + std::copysign(before, way))).as<float>();
-    return length(gap.crossing - gap.at) <= crossingReach * cell;
+/// Within the margin of ties one piece shows with the other's derivative, and so do sides of breaks that lie in it:
+/// these are looked at a little farther on the way to their end.
+uint64_t FaceCreases::lookBesideTies(const std::vector<FaceSegment>& segments, eval::Workspace& workspace) {
+    samples_.clear();
+    std::vector<std::pair<uint32_t, size_t>> sides;  // a gap and its side
+    for (uint32_t g = 0; g < gaps_.size(); ++g) {
+        const Gap& gap = gaps_[g];
+        for (size_t side = 0; side < 2; ++side) {
+            const PiecePoint &own = side == 0 ? gap.a : gap.b, &other = side == 0 ? gap.b : gap.a;
+            const Vec3f shown = (side == 0 ? gap.nearA : gap.nearB).point.gradient;
+            if (!mayShowOther(shown, own.gradient, other.gradient)) continue;
+            sides.emplace_back(g, side);
+            samples_.add(tapes_, segments[gap.segment].brick, between(gap.at, own.at, probeShare));
+        }
+    }
+    samples_.evaluate(workspace);
+    for (size_t i = 0; i < sides.size(); ++i) {
+        Gap& gap = gaps_[sides[i].first];
+        const bool isFirst = sides[i].second == 0;
+        float value;
+        const PiecePoint seen = samples_.point(i, value);
+        if (seen.label != (isFirst ? gap.a : gap.b).label || !isKnown(value)) continue;
+        (isFirst ? gap.nearA : gap.nearB) = {seen, value};
+    }
+    return sides.size();
 }
 
 }  // namespace sgm::mesh

@@ -20,12 +20,12 @@ public:
     void add(Vec3d point) { points_.push_back(point); }
     /// Twice the polygon's area, along its mean normal.
     Vec3d doubleArea() const;
-    /// Triangulates the polygon over its `normal`, unit, by ears, the best shaped first. Where a triangle of a polygon
-    /// of up to eight corners turns more than 37 degrees from the normal, as beside a corner far off the plane of the
-    /// others, so that the worst triangle is shaped as well as may be. `mayJoin(i, k)`: whether corners i and k may
-    /// have a diagonal. False where there are no ears that face along the normal. O(n³).
+    /// Triangulates the polygon over its `normal`, unit, by ears, the best shaped first. Where a triangle of a `curved`
+    /// polygon of up to eight corners turns more than 37 degrees from the normal, as beside a corner far off the plane
+    /// of the others, so that the worst triangle is shaped as well as may be.     /// `mayJoin(i, k)`: whether corners
+    /// i and k may have a diagonal. False where there are no ears that face along the normal. O(n³).
     template <class MayJoin>
-    bool triangulate(Vec3d normal, MayJoin&& mayJoin) {
+    bool triangulate(Vec3d normal, bool curved, MayJoin&& mayJoin) {
         normal_ = normal;
         beginRing();
         while (ring_.size() > 3) {
@@ -36,7 +36,7 @@ public:
         }
         if (!(shapeOf(ring_[0], ring_[1], ring_[2]) > 0)) return false;
         triangles_.push_back({ring_[0], ring_[1], ring_[2]});
-        if (points_.size() == 3 || points_.size() > mostCompared || !turnsMuch()) return true;
+        if (!curved || points_.size() == 3 || points_.size() > mostCompared || !turnsMuch()) return true;
         beginRing();
         for (size_t width = 1; width < ring_.size(); ++width)
             for (size_t i = 0; i + width < ring_.size(); ++i)

@@ -33,10 +33,19 @@ TEST(SmallPolygon, BestEarFirstWouldLeaveANeedle) {
     const std::vector<Vec3d> points{{0, 0, 0}, {.5, .01, -.4}, {1, 0, 0}, {.5, 1, 0}};
     SmallPolygon polygon = polygonOver(points);
     const Vec3d normal = normalized(polygon.doubleArea());
-    ASSERT_TRUE(polygon.triangulate(normal, anyDiagonal));
+    ASSERT_TRUE(polygon.triangulate(normal, true, anyDiagonal));
     for (const auto& t : polygon.triangles())
         EXPECT_EQ(std::count(t.begin(), t.end(), 1u), 1) << "the diagonal is 1, 3";
     EXPECT_EQ(polygon.triangles().size(), 2u);
+}
+
+TEST(SmallPolygon, MostOfAFlatOneLiesInItsPlane) {
+    // The same with its second corner off the plane: the best ear holds the other three.
+    const std::vector<Vec3d> points{{0, 0, 0}, {.5, .01, -.4}, {1, 0, 0}, {.5, 1, 0}};
+    SmallPolygon polygon = polygonOver(points);
+    ASSERT_TRUE(polygon.triangulate(normalized(polygon.doubleArea()), false, anyDiagonal));
+    const auto isWithout = [](const auto& t) { return std::count(t.begin(), t.end(), 1u) == 0; };
+    EXPECT_EQ(std::count_if(polygon.triangles().begin(), polygon.triangles().end(), isWithout), 1);
 }
 
 TEST(SmallPolygon, StarsOfAnySizeAreCovered) {
@@ -49,7 +58,7 @@ TEST(SmallPolygon, StarsOfAnySizeAreCovered) {
         }
         SmallPolygon polygon = polygonOver(points);
         const Vec3d twice = polygon.doubleArea(), normal = normalized(twice);
-        ASSERT_TRUE(polygon.triangulate(normal, anyDiagonal)) << count;
+        ASSERT_TRUE(polygon.triangulate(normal, true, anyDiagonal)) << count;
         EXPECT_EQ(polygon.triangles().size(), count - 2);
         EXPECT_NEAR(doubleAreaOf(points, polygon, normal), length(twice), 1e-12) << count;
     }
@@ -60,19 +69,19 @@ TEST(SmallPolygon, DiagonalsThatMayNotBeAreNot) {
     for (int i = 0; i < 7; ++i) points.push_back({std::cos(.9 * i), std::sin(.9 * i), 0});
     SmallPolygon polygon = polygonOver(points);
     const auto mayJoin = [](size_t i, size_t k) { return std::min(i, k) == 2 || std::max(i, k) == 2; };
-    ASSERT_TRUE(polygon.triangulate({0, 0, 1}, mayJoin));
+    ASSERT_TRUE(polygon.triangulate({0, 0, 1}, true, mayJoin));
     for (const auto& t : polygon.triangles()) EXPECT_EQ(std::count(t.begin(), t.end(), 2u), 1);
     SmallPolygon none = polygonOver(points);
-    EXPECT_FALSE(none.triangulate({0, 0, 1}, [](size_t, size_t) { return false; }));
+    EXPECT_FALSE(none.triangulate({0, 0, 1}, true, [](size_t, size_t) { return false; }));
 }
 
 TEST(SmallPolygon, WhatFacesAwayIsRefused) {
     const std::vector<Vec3d> points{{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
     SmallPolygon polygon = polygonOver(points);
-    EXPECT_FALSE(polygon.triangulate({0, 0, 1}, anyDiagonal));
+    EXPECT_FALSE(polygon.triangulate({0, 0, 1}, true, anyDiagonal));
     polygon.clear();
     for (const Vec3d& p : points) polygon.add(p);
-    EXPECT_TRUE(polygon.triangulate({0, 0, -1}, anyDiagonal));
+    EXPECT_TRUE(polygon.triangulate({0, 0, -1}, true, anyDiagonal));
 }
 
 }  // namespace

@@ -93,30 +93,45 @@ TEST(Normals, VerticesOfBlendsLieOnTheSurface) {
         }
 }
 
+struct Heights {
+    float low, high;
+};
+constexpr Heights allHeights{-1e9f, 1e9f};
+
+/// Corners of a simplified mesh whose normals are more than 30 degrees off the field's, those of specks left out.
+size_t cornersOffTheField(const std::string& text, int resolution, Heights heights = allHeights) {
+    Context context{nullptr, 2};
+    CrispModel crisp = crispModel(text, resolution, context, 0);
+    const float cell_m = crisp.grid.cell_m, speck_m2 = 1e-4f * cell_m * cell_m;
+    const eval::Tape tape = crisp.model.tape;
+    const auto mesh = crisp.edit({.tolerance_m = mesh::usualTolerance(cell_m)}, context);
+    EXPECT_TRUE(mesh.ok());
+    eval::Workspace workspace;
+    size_t off = 0;
+    for (const Face& t : facesOf(*mesh)) {
+        const float height = t.middle().y;
+        if (length(t.across()) < speck_m2 || height < heights.low || height > heights.high) continue;
+        for (size_t k = 0; k < 3; ++k) {
+            const Vec3f p = t.places[k] * .9f + t.middle() * .1f;  // on this side of a rim
+            float value;
+            Vec3f slope;
+            eval::evaluateGradient(tape, {&p.x, &p.y, &p.z, 1}, &value, &slope.x, &slope.y, &slope.z, workspace);
+            off += dot(normalized(slope), t.normals[k]) < .87f;
+        }
+    }
+    return off;
+}
+
 TEST(Normals, OfBlendsFollowTheField) {
     for (const Blend& blend : blends)
-        for (const int resolution : blend.resolutions) {
-            Context context{nullptr, 2};
-            CrispModel crisp = crispModel(blend.text, resolution, context, 0);
-            const float cell_m = crisp.grid.cell_m, speck_m2 = 1e-4f * cell_m * cell_m;
-            const eval::Tape tape = crisp.model.tape;
-            const auto mesh = crisp.edit({.tolerance_m = mesh::usualTolerance(cell_m)}, context);
-            ASSERT_TRUE(mesh.ok());
-            eval::Workspace workspace;
-            size_t elsewhere = 0;
-            for (const Face& t : facesOf(*mesh)) {
-                if (length(t.across()) < speck_m2) continue;
-                for (size_t k = 0; k < 3; ++k) {
-                    const Vec3f p = t.places[k] * .9f + t.middle() * .1f;  // on this side of a rim
-                    float value;
-                    Vec3f slope;
-                    eval::evaluateGradient(tape, {&p.x, &p.y, &p.z, 1}, &value, &slope.x, &slope.y, &slope.z,
-                                           workspace);
-                    elsewhere += dot(normalized(slope), t.normals[k]) < .87f;  // 30 degrees
-                }
-            }
-            EXPECT_LE(elsewhere, 3u) << blend.name << ' ' << resolution;  // one triangle
-        }
+        for (const int resolution : blend.resolutions)
+            EXPECT_LE(cornersOffTheField(blend.text, resolution), 3u) << blend.name << ' ' << resolution;  // a triangle
+}
+
+TEST(Normals, FollowTheFieldBesideTies) {
+    // The side of a cone comes out of a torus: some breaks lie where both are equally far within the margin of ties,
+    // and show with the torus's slope on the cone's side. Lower down the torus touches other solids.
+    EXPECT_EQ(cornersOffTheField(fileText("examples/figure1.sgm"), 256, {.58f, .65f}), 0u);
 }
 
 }  // namespace
