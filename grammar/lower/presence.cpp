@@ -6,12 +6,14 @@
 #include "grammar/lower/mesh_positions.h"
 #include "grammar/lower/scope_lines.h"
 #include "modeler/core/number_set.h"
+#include "modeler/core/parallel.h"
 #include "modeler/mesh/point_triangle.h"
 
 namespace sgm::lower {
 namespace {
 
 constexpr float besideLine = 5;  ///< times as far counts what lies beside a line
+constexpr size_t sharesPerThread = 4;
 constexpr uint32_t noEntry = field::HashIndex::none;
 
 Vec3i cellOf(Vec3f p, float perMetre) {
@@ -45,53 +47,57 @@ NumberSet cellsAround(std::span<const Vec3f> points, float cell_m) {
 
 }  // namespace
 
-Presence::Presence(const mesh::Mesh& mesh, std::span<const Query> queries, std::span<const Vec3f> points, float cell_m)
-    : perMetre_(1 / cell_m) {
+Presence::Presence(const mesh::Mesh& mesh, std::span<const Query> queries, std::span<const Vec3f> points, float cell_m,
+                   int threads)
+    : perMetre_(1 / cell_m), shares_(sharesPerThread * static_cast<size_t>(threadCount(threads))) {
     using Extent = Query::Extent;
     for (const Query& part : queries) reach_m_.push_back(part.reach_m);
     const NumberSet around = cellsAround(points, cell_m);
     const std::vector<const Vec3f*> positions = positionsOf(mesh);
-    for (const mesh::Chunk& c : mesh.chunks)
-        for (size_t t = 0; t < c.origins.size(); ++t) {
-            const Extent extent = queries[c.origins[t]].extent;
-            if (extent == Extent::Nothing) continue;
-            const mesh::Triangle corners = c.inMesh(c.triangles[t]);
-            const Triangle triangle{*positions[corners[0]], *positions[corners[1]], *positions[corners[2]]};
-            const Vec3f middle = (triangle.a + triangle.b + triangle.c) * (1.0f / 3);
-            if (extent == Extent::All || around.contains(keyAround(middle, cell_m)))
-                addTriangle(triangle, c.origins[t]);
-        }
+    parallelFor(shares_.size(), threads, nullptr, [&](size_t number, int) {
+        for (const mesh::Chunk& c : mesh.chunks)
+            for (size_t t = 0; t < c.origins.size(); ++t) {
+                const OriginId part = c.origins[t];
+                if (part % shares_.size() != number || queries[part].extent == Extent::Nothing) continue;
+                const mesh::Triangle corners = c.inMesh(c.triangles[t]);
+                const Triangle triangle{*positions[corners[0]], *positions[corners[1]], *positions[corners[2]]};
+                const Vec3f middle = (triangle.a + triangle.b + triangle.c) * (1.0f / 3);
+                if (queries[part].extent == Extent::All || around.contains(keyAround(middle, cell_m)))
+                    addTriangle(triangle, part, shares_[number]);
+            }
+    });
 }
 
-void Presence::addTriangle(const Triangle& triangle, OriginId part) {
-    const auto number = static_cast<uint32_t>(triangles_.size());
-    triangles_.push_back(triangle);
+void Presence::addTriangle(const Triangle& triangle, OriginId part, Share& share) const {
+    const auto number = static_cast<uint32_t>(share.triangles.size());
+    share.triangles.push_back(triangle);
     const float reach = reach_m_[part];
     const Vec3f lo = min(min(triangle.a, triangle.b), triangle.c) - Vec3f{reach, reach, reach},
                 hi = max(max(triangle.a, triangle.b), triangle.c) + Vec3f{reach, reach, reach};
     const Vec3i first = cellOf(lo, perMetre_), last = cellOf(hi, perMetre_);
     for (int z = first.z; z <= last.z; ++z)
         for (int y = first.y; y <= last.y; ++y)
-            for (int x = first.x; x <= last.x; ++x) enter(keyOf({x, y, z}, part), number);
+            for (int x = first.x; x <= last.x; ++x) share.enter(keyOf({x, y, z}, part), number);
 }
 
-void Presence::enter(uint64_t key, uint32_t triangle) {
+void Presence::Share::enter(uint64_t key, uint32_t triangle) {
     uint32_t cell = find(key);
     if (cell == noEntry) {
-        cell = static_cast<uint32_t>(cells_.size());
-        cells_.push_back({key, noEntry});
-        index_.insert(key, cell);
+        cell = static_cast<uint32_t>(cells.size());
+        cells.push_back({key, noEntry});
+        index.insert(key, cell);
     }
-    entries_.push_back({triangle, cells_[cell].newest});
-    cells_[cell].newest = static_cast<uint32_t>(entries_.size()) - 1;
+    entries.push_back({triangle, cells[cell].newest});
+    cells[cell].newest = static_cast<uint32_t>(entries.size()) - 1;
 }
 
 template <class IsNear>
 bool Presence::isAny(Vec3f p, OriginId part, IsNear&& isNear) const {
-    const uint32_t cell = find(keyOf(cellOf(p, perMetre_), part));
+    const Share& share = shares_[part % shares_.size()];
+    const uint32_t cell = share.find(keyOf(cellOf(p, perMetre_), part));
     if (cell == noEntry) return false;
-    for (uint32_t at = cells_[cell].newest; at != noEntry; at = entries_[at].next)
-        if (isNear(triangles_[entries_[at].triangle])) return true;
+    for (uint32_t at = share.cells[cell].newest; at != noEntry; at = share.entries[at].next)
+        if (isNear(share.triangles[share.entries[at].triangle])) return true;
     return false;
 }
 

@@ -21,9 +21,10 @@ public:
         enum class Extent : uint8_t { Nothing, NearPoints, All } extent = Extent::Nothing;
         float reach_m = 0;  ///< how near a triangle has to be
     };
-    /// O(triangles of those parts + points). `queries` is by part. Of parts that are asked about near points only the
-    /// triangles within a cell of one of `points` count.
-    Presence(const mesh::Mesh& mesh, std::span<const Query> queries, std::span<const Vec3f> points, float cell_m);
+    /// O(triangles of those parts + points) on `threads` threads. `queries` is by part. Of parts that are asked about
+    /// near points only the triangles within a cell of one of `points` count.
+    Presence(const mesh::Mesh& mesh, std::span<const Query> queries, std::span<const Vec3f> points, float cell_m,
+             int threads);
     /// Whether a triangle of the part lies within its reach.
     bool isNear(Vec3f p, OriginId part) const;
     /// Whether a line through p along `along`, of length 1, passes one within a fifth of that reach.
@@ -46,20 +47,26 @@ private:
         uint32_t newest;  ///< of its entries
     };
 
-    void addTriangle(const Triangle& triangle, OriginId part);
-    void enter(uint64_t key, uint32_t triangle);
+    /// Of every so manieth part; made by one thread.
+    struct Share {
+        std::vector<Triangle> triangles;
+        std::vector<Entry> entries;
+        std::vector<Cell> cells;
+        field::HashIndex index;  ///< of cells
+
+        void enter(uint64_t key, uint32_t triangle);
+        uint32_t find(uint64_t key) const {
+            return index.find(key, [&](uint32_t cell) { return cells[cell].key == key; });
+        }
+    };
+
+    void addTriangle(const Triangle& triangle, OriginId part, Share& share) const;
     template <class IsNear>
     bool isAny(Vec3f p, OriginId part, IsNear&& isNear) const;
-    uint32_t find(uint64_t key) const {
-        return index_.find(key, [&](uint32_t cell) { return cells_[cell].key == key; });
-    }
 
     std::vector<float> reach_m_;  ///< by part
     float perMetre_;              ///< cells
-    std::vector<Triangle> triangles_;
-    std::vector<Entry> entries_;
-    std::vector<Cell> cells_;
-    field::HashIndex index_;  ///< of cells
+    std::vector<Share> shares_;
 };
 
 }  // namespace sgm::lower

@@ -304,7 +304,7 @@ void probeParts(std::vector<Candidate>& thin, const eval::Tape& tape, const Pres
 
 /// Knows where the mesh has the parts, and what is at the sections.
 Presence presenceOf(const mesh::Mesh& mesh, std::span<const Candidate> thin, std::span<const ThinSection> sections,
-                    size_t partCount, float cell_m) {
+                    size_t partCount, float cell_m, int threads) {
     using Extent = Presence::Query::Extent;
     std::vector<Presence::Query> queries(partCount);
     const float reach_m = reachCells * cell_m;
@@ -316,7 +316,7 @@ Presence presenceOf(const mesh::Mesh& mesh, std::span<const Candidate> thin, std
                 points.push_back(end.at);
             }
     for (const Candidate& c : thin) queries[c.part] = {Extent::All, reach_m};
-    return Presence(mesh, queries, points, cell_m);
+    return Presence(mesh, queries, points, cell_m, threads);
 }
 
 std::vector<ThinPart> lackedOf(std::span<const Candidate> thin) {
@@ -348,7 +348,7 @@ Result<std::vector<ThinPart>> findTornParts(const derive::Derivation& derivation
         queries[c.part] = {Presence::Query::Extent::All,
                            std::clamp(tornShare * static_cast<float>(minComponent(c.scope.size)),
                                       leastReachCells * cell_m, reachCells * cell_m)};
-    const Presence presence(mesh, queries, {}, cell_m);
+    const Presence presence(mesh, queries, {}, cell_m, threads);
     measureFacing(mesh, thin, model.shapeOf.size());
     probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();
@@ -365,7 +365,7 @@ Result<std::vector<ThinPart>> findMissingParts(const derive::Derivation& derivat
     if (!sections.ok()) return sections.error();
     auto walls = findMissingWalls(derivation, model, tape, mesh, cell_m, threads, progress, among);
     if (!walls.ok() || (thin.empty() && sections->empty())) return walls;
-    const Presence presence = presenceOf(mesh, thin, *sections, model.shapeOf.size(), cell_m);
+    const Presence presence = presenceOf(mesh, thin, *sections, model.shapeOf.size(), cell_m, threads);
     measureFacing(mesh, thin, model.shapeOf.size());
     probeParts(thin, tape, presence, cell_m, threads, progress);
     if (cancelled(progress)) return cancelledError();

@@ -223,7 +223,7 @@ Result<std::vector<ThinPart>> findTornEaves(const derive::Derivation& derivation
         for (const Eave& eave : overhang.eaves)
             for (const SurfaceLines::Bracket& b : eave.crossings) points.push_back(b.middle().as<float>());
     }
-    const Presence presence(mesh, queries, points, cell_m);
+    const Presence presence(mesh, queries, points, cell_m, threads);
     for (Overhang& overhang : overhangs) {
         for (const Eave& eave : overhang.eaves) compare(eave, presence, overhang);
         if (auto found = tornOf(overhang, static_cast<double>(cell_m))) torn.push_back(std::move(*found));

@@ -160,7 +160,7 @@ Result<std::vector<ThinPart>> findTornRims(const derive::Derivation& derivation,
     if (rims.empty()) return torn;
     std::vector<Presence::Query> queries(model.shapeOf.size());
     for (const Rim& rim : rims) queries[rim.part] = {Presence::Query::Extent::All, awayCells * cell_m};
-    const Presence presence(mesh, queries, {}, cell_m);
+    const Presence presence(mesh, queries, {}, cell_m, threads);
     eval::orderByPlace(std::span(rims));
     eval::probeInGroups(
         std::span(rims), threads, progress, "rims",
