@@ -14,22 +14,26 @@
 namespace sgm::lower {
 namespace {
 
-/// So many cells off the surface a triangle's middle is wrong: of flat parts, of those whose edges end thinner than any
-/// cell, as eaves and mouldings, and of round ones, beside what a chord is off that.
+/// So many cells off the surface the middle of a triangle or of its edges is wrong: of flat parts, of those whose edges
+/// end thinner than any cell, as eaves and mouldings, and of round ones, beside what a chord is off that.
 constexpr float offFlat = 0.03f, offEaves = 0.12f, offRound = 0.06f;
 constexpr float chordSlack = 2;     ///< times what a chord is off by the normals at its ends
 constexpr float boxCells = 8;       ///< of the cubes whose triangles are looked at together
 constexpr double placeCells = 0.5;  ///< edge of a place: the triangle's own cell and those beside it
 
-/// Triangles whose middles lie in a cube.
+/// Triangles whose middles lie in a cube: points of these, and of their edges.
 struct Patch {
     Vec3i index;
     Box3f box;
-    std::vector<Vec3f> middles;
+    std::vector<Vec3f> points;
     std::vector<OriginId> parts;
     std::vector<float> most_m;  ///< that they may be off
     std::vector<float> off_m;   ///< by the field
 
+    void add(Vec3f point, OriginId part, float mostOff_m) {
+        box = hull(box, point);
+        points.push_back(point), parts.push_back(part), most_m.push_back(mostOff_m);
+    }
     Vec3d centre() const { return ((box.lo + box.hi) * 0.5f).as<double>(); }
     uint64_t number() const {
         return (static_cast<uint64_t>(index.x) & 0x1fffff) << 42 | (static_cast<uint64_t>(index.y) & 0x1fffff) << 21 |
@@ -49,7 +53,7 @@ public:
         tapes_.visit(boxes, [&](size_t i, const eval::Tape& tape) {
             Patch& patch = patches[i];
             points_.clear();
-            for (const Vec3f& p : patch.middles) points_.add(p);
+            for (const Vec3f& p : patch.points) points_.add(p);
             patch.off_m.resize(points_.size());
             eval::evaluate(tape, points_.points(), patch.off_m.data(), tapes_.workspace());
         });
@@ -147,8 +151,10 @@ std::vector<Patch> patchesOf(const mesh::Mesh& mesh, float cell_m, const std::ve
             const auto [known, isNew] = numbers.emplace(at.number(), patches.size());
             if (isNew) patches.push_back(at);
             Patch& patch = patches[known->second];
-            patch.box = hull(patch.box, middle);
-            patch.middles.push_back(middle), patch.parts.push_back(c.origins[t]), patch.most_m.push_back(most_m);
+            patch.add(middle, c.origins[t], most_m);
+            // A triangle across a corner that is cut off is farthest off at its edges.
+            for (size_t k = 0; k < 3; ++k)
+                patch.add((triangle[k] + triangle[(k + 1) % 3]) * 0.5f, c.origins[t], most_m);
         });
     return patches;
 }
@@ -226,7 +232,7 @@ Result<std::vector<ThinPart>> findOffSurface(const derive::Derivation& derivatio
             if (std::abs(patch.off_m[k]) <= patch.most_m[k]) continue;
             ThinPart& part = parts[patch.parts[k]];
             const double edge_m = placeCells * static_cast<double>(cell_m);
-            part.places.push_back({patch.middles[k].as<double>(), {}, {edge_m, edge_m, edge_m}});
+            part.places.push_back({patch.points[k].as<double>(), {}, {edge_m, edge_m, edge_m}});
         }
     for (auto& [number, part] : parts) {
         part.kind = ThinPart::Kind::Rim, part.part = number;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "modeler/eval/local_tapes.h"
 #include "modeler/field/hash_index.h"
@@ -16,8 +17,11 @@
 namespace sgm::mesh {
 namespace {
 
-constexpr int mostSplits = 2;     ///< of one edge; each leaves a quarter of what it is off
-constexpr double likely = 0.5;    ///< of the tolerance: by the normals an edge is so far off that it is looked at
+constexpr int mostSplits = 3;   ///< of one edge; each leaves a quarter of what it is off
+constexpr double likely = 0.5;  ///< of the tolerance: by the normals an edge is so far off that it is looked at
+/// Times the tolerance: an edge so long that is off by so much, by the normals, lies along a straight surface, as of a
+/// column, for simplification leaves none on others.
+constexpr double longLength = 400, much = 4;
 constexpr double farthest = 0.3;  ///< of an edge's length: where its middle may go
 /// Of an edge's length, from a crease: where the pieces beside it are looked at, step by step.
 constexpr std::array besideCrease{0.15, 0.05, 0.02};
@@ -143,11 +147,18 @@ public:
         }
     }
 
-    /// Of those that changed triangles have.
-    std::vector<CurvedEdge> find(double tolerance_m) {
-        for (const uint32_t t : mesh_.changed())
+    /// Of those that changed triangles have, and all triangles of pieces that are smooth now and weren't before.
+    /// `smooth` are the pieces that were, and becomes those that are.
+    std::vector<CurvedEdge> find(double tolerance_m, std::unordered_set<uint64_t>& smooth) {
+        std::vector<bool> isAsked(chunk_.triangles.size());
+        for (const uint32_t t : mesh_.changed()) isAsked[t] = true;
+        for (uint32_t t = 0; t < chunk_.triangles.size(); ++t) {
+            if (!isAsked[t] && (!isSmooth(t) || smooth.contains(keyOf(t)))) continue;
             for (int k = 0; k < 3; ++k)
-                if (bendOf(t, k) > likely * tolerance_m && isFollowed(t, k)) add(t, k);
+                if (bendOf(t, k) > likely * tolerance_m && isFollowed(t, k, tolerance_m)) add(t, k);
+        }
+        for (const auto& [key, corners] : bordering_)
+            if (corners > 0) smooth.insert(key);
         if (edges_.empty()) return {};
         for (uint32_t t = 0; t < chunk_.triangles.size(); ++t)
             for (int k = 0; k < 3; ++k) addSide(t, k);
@@ -174,11 +185,15 @@ private:
     uint64_t keyOf(uint32_t t) const { return uint64_t{chunk_.origins[t]} << 32 | chunk_.labels[t]; }
 
     /// A piece that is simplified to strips between its borders is smooth, as an arch or a shaft: all its edges count.
-    /// A rough or organic one has vertices inside, and no cells follow it.
-    bool isFollowed(uint32_t t, int k) const {
+    /// A rough or organic one has vertices inside, and no cells follow it; a column has some where cells of two sizes
+    /// meet.
+    bool isFollowed(uint32_t t, int k, double tolerance_m) const {
         const auto [a, b] = endsOf(t, k);
-        return (isBorder_[a] && isBorder_[b]) || bordering_.at(keyOf(t)) > 0;
+        const double length_m = length(chunk_.positions[a].as<double>() - chunk_.positions[b].as<double>());
+        if (length_m > longLength * tolerance_m && bendOf(t, k) > much * tolerance_m) return true;
+        return (isBorder_[a] && isBorder_[b]) || isSmooth(t);
     }
+    bool isSmooth(uint32_t t) const { return bordering_.at(keyOf(t)) > 0; }
 
     /// How far the middle of the edge behind a corner is from the surface, by the normals at its ends: for an arc
     /// (n_b − n_a) · (b − a) / 8.
@@ -236,9 +251,9 @@ private:
 };
 
 /// The edges that are off by more than the tolerance, in their order.
-std::vector<EdgeSplit> splitsOf(const EdgeSplitter& mesh, const eval::Tape& field, double tolerance_m, int threads,
-                                Progress* progress) {
-    std::vector<CurvedEdge> edges = EdgeFinder(mesh).find(tolerance_m);
+std::vector<EdgeSplit> splitsOf(const EdgeSplitter& mesh, const eval::Tape& field, double tolerance_m,
+                                std::unordered_set<uint64_t>& smooth, int threads, Progress* progress) {
+    std::vector<CurvedEdge> edges = EdgeFinder(mesh).find(tolerance_m, smooth);
     eval::orderByPlace(std::span(edges));
     std::vector<EdgeGroup> groups;
     for (size_t i = 0; i < edges.size(); i += edgesAtOnce)
@@ -268,9 +283,10 @@ Result<size_t> splitCurvedEdges(Mesh& mesh, const eval::Tape& field, double tole
     Chunk whole = joinChunks(mesh);
     if (whole.labels.empty()) return size_t{0};
     EdgeSplitter splitter(std::move(whole), threads, progress);
+    std::unordered_set<uint64_t> smooth;  // pieces
     size_t count = 0;
     for (int round = 0; round < mostSplits; ++round) {
-        const std::vector<EdgeSplit> splits = splitsOf(splitter, field, tolerance_m, threads, progress);
+        const std::vector<EdgeSplit> splits = splitsOf(splitter, field, tolerance_m, smooth, threads, progress);
         if (cancelled(progress)) return cancelledError();
         const size_t split = splits.empty() ? 0 : splitter.split(splits);
         if (cancelled(progress)) return cancelledError();

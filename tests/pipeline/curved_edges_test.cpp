@@ -29,13 +29,14 @@ mesh::Mesh simplified(const CrispModel& crisp) {
     return std::move(*made);
 }
 
-/// The share of a mesh's edges whose middles are farther from the surface than that.
-double shareOff(const mesh::Mesh& mesh, const Model& model, double distance_m) {
+/// The share of a mesh's edges, so long at least, whose middles are farther from the surface than that.
+double shareOff(const mesh::Mesh& mesh, const Model& model, double distance_m, float length_m = 0) {
     std::vector<float> x, y, z;
     for (const mesh::Chunk& c : mesh.chunks)
         for (const mesh::Triangle& t : c.triangles)
             for (int k = 0; k < 3; ++k) {
-                const Vec3f p = (c.positions[t[k]] + c.positions[t[(k + 1) % 3]]) * .5f;
+                const Vec3f a = c.positions[t[k]], b = c.positions[t[(k + 1) % 3]], p = (a + b) * .5f;
+                if (length(b - a) < length_m) continue;
                 x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
             }
     std::vector<float> values(x.size());
@@ -63,6 +64,21 @@ TEST(CurvedEdges, AreSplitWhereTheyAreOffByMoreThanTheTolerance) {
 }
 
 /// As of arches, whose chords are in the hole.
+TEST(CurvedEdges, AreSplitAlongAColumnInCellsOfTwoSizes) {
+    // Cells around a plate are halved; the column's piece has more corners where they meet larger ones than at its
+    // ends.
+    Context context{nullptr, 2};
+    CrispModel crisp = crispModel(
+        "grammar 2\n"
+        "start A -> cube size (10m, .5m, 4m) + cylinder size (.5m, 5.3m, .5m) at +y\n"
+        "  + cube size (1.2m, .04m, 1.2m) move (0, .7m, 0)\n",
+        64, context);
+    const double tolerance_m = mesh::usualTolerance(crisp.grid.cell_m);
+    const auto mesh = crisp.edit({.tolerance_m = tolerance_m}, context);
+    ASSERT_TRUE(mesh.ok());
+    EXPECT_EQ(shareOff(*mesh, crisp.model, 4 * tolerance_m, 4 * crisp.grid.cell_m), 0);
+}
+
 TEST(CurvedEdges, OfRoundHolesLeaveTheirVolume) {
     Context context{nullptr, 2};
     CrispModel crisp = crispModel(
