@@ -21,7 +21,7 @@ constexpr float chordSlack = 2;     ///< times what a chord is off by the normal
 constexpr float boxCells = 8;       ///< of the cubes whose triangles are looked at together
 constexpr double placeCells = 0.5;  ///< edge of a place: the triangle's own cell and those beside it
 
-/// Triangles whose middles lie in a cube: points of these, and of their edges.
+/// The middles of the triangles that lie in a cube, and those of their edges.
 struct Patch {
     Vec3i index;
     Box3f box;

@@ -12,8 +12,8 @@
 namespace sgm::lower {
 namespace {
 
-constexpr float besideLine = 5;  ///< times as far counts what lies beside a line
-constexpr size_t sharesPerThread = 4;
+constexpr float besideLine = 5;        ///< times as far counts what lies beside a line
+constexpr size_t shardsPerThread = 4;  ///< parts differ in their triangles
 constexpr uint32_t noEntry = field::HashIndex::none;
 
 Vec3i cellOf(Vec3f p, float perMetre) {
@@ -26,6 +26,11 @@ uint64_t keyOf(Vec3i cell, OriginId part) {
     uint64_t key = part * 0xd6e8feb86659fd93u;
     for (const int c : {cell.x, cell.y, cell.z}) key = (key ^ bits(c)) * 0x9e3779b97f4a7c15u, key ^= key >> 29;
     return key;
+}
+
+size_t shardCount(int threads) {
+    const auto count = static_cast<size_t>(threadCount(threads));
+    return count > 1 ? shardsPerThread * count : 1;
 }
 
 /// Of the cell of twice the edge around a point; for NumberSet, not 0.
@@ -49,38 +54,38 @@ NumberSet cellsAround(std::span<const Vec3f> points, float cell_m) {
 
 Presence::Presence(const mesh::Mesh& mesh, std::span<const Query> queries, std::span<const Vec3f> points, float cell_m,
                    int threads)
-    : perMetre_(1 / cell_m), shares_(sharesPerThread * static_cast<size_t>(threadCount(threads))) {
+    : perMetre_(1 / cell_m), shards_(shardCount(threads)) {
     using Extent = Query::Extent;
     for (const Query& part : queries) reach_m_.push_back(part.reach_m);
     const NumberSet around = cellsAround(points, cell_m);
     const std::vector<const Vec3f*> positions = positionsOf(mesh);
-    parallelFor(shares_.size(), threads, nullptr, [&](size_t number, int) {
+    parallelFor(shards_.size(), threads, nullptr, [&](size_t number, int) {
         for (const mesh::Chunk& c : mesh.chunks)
             for (size_t t = 0; t < c.origins.size(); ++t) {
                 const OriginId part = c.origins[t];
-                if (part % shares_.size() != number || queries[part].extent == Extent::Nothing) continue;
+                if (shardOf(part) != number || queries[part].extent == Extent::Nothing) continue;
                 const mesh::Triangle corners = c.inMesh(c.triangles[t]);
                 const Triangle triangle{*positions[corners[0]], *positions[corners[1]], *positions[corners[2]]};
                 const Vec3f middle = (triangle.a + triangle.b + triangle.c) * (1.0f / 3);
                 if (queries[part].extent == Extent::All || around.contains(keyAround(middle, cell_m)))
-                    addTriangle(triangle, part, shares_[number]);
+                    addTriangle(triangle, part, shards_[number]);
             }
     });
 }
 
-void Presence::addTriangle(const Triangle& triangle, OriginId part, Share& share) const {
-    const auto number = static_cast<uint32_t>(share.triangles.size());
-    share.triangles.push_back(triangle);
+void Presence::addTriangle(const Triangle& triangle, OriginId part, Shard& shard) const {
+    const auto number = static_cast<uint32_t>(shard.triangles.size());
+    shard.triangles.push_back(triangle);
     const float reach = reach_m_[part];
     const Vec3f lo = min(min(triangle.a, triangle.b), triangle.c) - Vec3f{reach, reach, reach},
                 hi = max(max(triangle.a, triangle.b), triangle.c) + Vec3f{reach, reach, reach};
     const Vec3i first = cellOf(lo, perMetre_), last = cellOf(hi, perMetre_);
     for (int z = first.z; z <= last.z; ++z)
         for (int y = first.y; y <= last.y; ++y)
-            for (int x = first.x; x <= last.x; ++x) share.enter(keyOf({x, y, z}, part), number);
+            for (int x = first.x; x <= last.x; ++x) shard.enter(keyOf({x, y, z}, part), number);
 }
 
-void Presence::Share::enter(uint64_t key, uint32_t triangle) {
+void Presence::Shard::enter(uint64_t key, uint32_t triangle) {
     uint32_t cell = find(key);
     if (cell == noEntry) {
         cell = static_cast<uint32_t>(cells.size());
@@ -93,11 +98,11 @@ void Presence::Share::enter(uint64_t key, uint32_t triangle) {
 
 template <class IsNear>
 bool Presence::isAny(Vec3f p, OriginId part, IsNear&& isNear) const {
-    const Share& share = shares_[part % shares_.size()];
-    const uint32_t cell = share.find(keyOf(cellOf(p, perMetre_), part));
+    const Shard& shard = shards_[shardOf(part)];
+    const uint32_t cell = shard.find(keyOf(cellOf(p, perMetre_), part));
     if (cell == noEntry) return false;
-    for (uint32_t at = share.cells[cell].newest; at != noEntry; at = share.entries[at].next)
-        if (isNear(share.triangles[share.entries[at].triangle])) return true;
+    for (uint32_t at = shard.cells[cell].newest; at != noEntry; at = shard.entries[at].next)
+        if (isNear(shard.triangles[shard.entries[at].triangle])) return true;
     return false;
 }
 

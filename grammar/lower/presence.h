@@ -47,8 +47,8 @@ private:
         uint32_t newest;  ///< of its entries
     };
 
-    /// Of every so manieth part; made by one thread.
-    struct Share {
+    /// The triangles of some parts, those with one remainder of their number; filled by one thread.
+    struct Shard {
         std::vector<Triangle> triangles;
         std::vector<Entry> entries;
         std::vector<Cell> cells;
@@ -60,13 +60,14 @@ private:
         }
     };
 
-    void addTriangle(const Triangle& triangle, OriginId part, Share& share) const;
+    void addTriangle(const Triangle& triangle, OriginId part, Shard& shard) const;
+    size_t shardOf(OriginId part) const { return part % shards_.size(); }
     template <class IsNear>
     bool isAny(Vec3f p, OriginId part, IsNear&& isNear) const;
 
     std::vector<float> reach_m_;  ///< by part
     float perMetre_;              ///< cells
-    std::vector<Share> shares_;
+    std::vector<Shard> shards_;
 };
 
 }  // namespace sgm::lower

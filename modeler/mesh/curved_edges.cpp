@@ -21,7 +21,7 @@ constexpr int mostSplits = 3;   ///< of one edge; each leaves a quarter of what 
 constexpr double likely = 0.5;  ///< of the tolerance: by the normals an edge is so far off that it is looked at
 /// Times the tolerance: an edge so long that is off by so much, by the normals, lies along a straight surface, as of a
 /// column, for simplification leaves none on others.
-constexpr double longLength = 400, much = 4;
+constexpr double longEdge = 400, farOff = 4;
 constexpr double farthest = 0.3;  ///< of an edge's length: where its middle may go
 /// Of an edge's length, from a crease: where the pieces beside it are looked at, step by step.
 constexpr std::array besideCrease{0.15, 0.05, 0.02};
@@ -190,7 +190,7 @@ private:
     bool isFollowed(uint32_t t, int k, double tolerance_m) const {
         const auto [a, b] = endsOf(t, k);
         const double length_m = length(chunk_.positions[a].as<double>() - chunk_.positions[b].as<double>());
-        if (length_m > longLength * tolerance_m && bendOf(t, k) > much * tolerance_m) return true;
+        if (length_m > longEdge * tolerance_m && bendOf(t, k) > farOff * tolerance_m) return true;
         return (isBorder_[a] && isBorder_[b]) || isSmooth(t);
     }
     bool isSmooth(uint32_t t) const { return bordering_.at(keyOf(t)) > 0; }

@@ -129,8 +129,8 @@ void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sampl
     Gap& gap = gaps_[g];
     const double bracket = length((gap.nearB.point.at - gap.nearA.point.at).as<double>());
     const bool isWide = bracket > mergedShare * grid_->cell_m;  // else the breaks beside a third piece become one
-    // Between parallel planes something has to lie, which any third piece tells.
-    const bool isStep = dot(normalized(gap.a.gradient), normalized(gap.b.gradient)) > parallelCosine;
+    // Where a step lies between parallel planes a third piece tells so, whether or not it reaches the surface here.
+    const bool areParallel = dot(normalized(gap.a.gradient), normalized(gap.b.gradient)) > parallelCosine;
     for (size_t k = 1; k < borderParts; ++k) {
         const double most = shareOfPart(std::min(k, borderParts - k)) * bracket;
         const auto [point, mayCross] = inBracket(segment, gap.nearA.point, most, sample + k - 1);
@@ -138,7 +138,7 @@ void FaceCreases::takeParts(const FaceSegment& segment, uint32_t g, size_t sampl
             gap.nearA.point = point;
             continue;
         }
-        const bool isThird = point.label != gap.b.label && (mayCross || isStep);
+        const bool isThird = point.label != gap.b.label && (mayCross || areParallel);
         if (isThird && gap.splits < mostSplits && isWide && mayLieAt(segment, point.at)) return split(g, point);
         if (point.label == gap.b.label)
             gap.nearB.point = point;

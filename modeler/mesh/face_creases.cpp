@@ -21,12 +21,20 @@ constexpr float endMargin = 0x1.0p-12f;     ///< of a segment, kept free of brea
 constexpr double monotoneShare = 0x1.0p-6;  ///< of a segment, between breaks
 constexpr float faceMargin = 0x1.0p-7f;     ///< of a cell, kept free of breaks at the sides of a face
 constexpr float thirdShare = 0.5f;          ///< of the field expected outside a third piece: how far it may be off
+constexpr float leastToOther = 0.99f;       ///< cosine of a side that may show with the other piece's derivative
+constexpr float mostToOwn = 0.95f;          ///< and to the derivative at its own end
 
 /// Whether a point looked at on the way to `end` lies near that one's piece, on the same side of it: within the solid,
 /// in seams between parts and in thin sheets, a piece shows with its derivative turned round.
 bool isNearPiece(const PiecePoint& point, float value, const PiecePoint& end) {
     return point.label == end.label && dot(point.gradient, end.gradient) > 0 &&
            std::abs(value) <= bulgeShare * length(point.gradient) * length(end.at - point.at);
+}
+
+/// Whether a side of a break may show with the derivative of the piece across it.
+bool mayShowOther(Vec3f side, Vec3f own, Vec3f other) {
+    const Vec3f n = normalized(side);
+    return dot(n, normalized(other)) > leastToOther && dot(n, normalized(own)) < mostToOwn;
 }
 
 /// Whether each break lies farther along the segment than the one before: then the way over them can't cross itself.
@@ -283,6 +291,33 @@ bool FaceCreases::mayLieAt(const FaceSegment& segment, Vec3f p) const { return i
 /// The nearest point inside the segment's face.
 Vec3f FaceCreases::inFace(const FaceSegment& segment, Vec3f p) const {
     return FaceRectangle(*grid_, segment.face, segment.axis).within(p, faceMargin * grid_->cell_m);
+}
+
+/// Within the margin of ties one piece shows with the other's derivative, and so do sides of breaks that lie in it:
+/// these are looked at a little farther on the way to their end.
+uint64_t FaceCreases::lookBesideTies(const std::vector<FaceSegment>& segments, eval::Workspace& workspace) {
+    samples_.clear();
+    std::vector<std::pair<uint32_t, size_t>> sides;  // a gap and its side
+    for (uint32_t g = 0; g < gaps_.size(); ++g) {
+        const Gap& gap = gaps_[g];
+        for (size_t side = 0; side < 2; ++side) {
+            const PiecePoint &own = side == 0 ? gap.a : gap.b, &other = side == 0 ? gap.b : gap.a;
+            const Vec3f shown = (side == 0 ? gap.nearA : gap.nearB).point.gradient;
+            if (!mayShowOther(shown, own.gradient, other.gradient)) continue;
+            sides.emplace_back(g, side);
+            samples_.add(tapes_, segments[gap.segment].brick, between(gap.at, own.at, probeShare));
+        }
+    }
+    samples_.evaluate(workspace);
+    for (size_t i = 0; i < sides.size(); ++i) {
+        Gap& gap = gaps_[sides[i].first];
+        const bool isFirst = sides[i].second == 0;
+        float value;
+        const PiecePoint seen = samples_.point(i, value);
+        if (seen.label != (isFirst ? gap.a : gap.b).label || !isKnown(value)) continue;
+        (isFirst ? gap.nearA : gap.nearB) = {seen, value};
+    }
+    return sides.size();
 }
 
 /// Pieces between breaks that coincide go; where a segment's way crosses itself, or another segment shares its face,

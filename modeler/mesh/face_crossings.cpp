@@ -14,8 +14,6 @@ constexpr float leastTurned = 1e-3f;       ///< of that, between either end and 
 constexpr float smoothBorder = 0.9999f;    ///< cosine between the pieces beside a border that is no crease
 constexpr double stopShare = 0x1p-10;      ///< of a cell, between a crossing and the piece that ends its crease
 constexpr float confirmedShare = 0.0625f;  ///< of a cell times the slope: the field beside a confirmed crossing
-constexpr float otherPiece = 0.99f;        ///< cosine to the other end, from which on a side may show that one's slope
-constexpr float ownPiece = 0.95f;          ///< and to its own end, up to which
 
 /// Whether the surface turns from one end of a gap to the other, and doesn't bend at the border amid that. Within the
 /// margin of ties one piece shows with the other's derivative, which doesn't turn where both are flat.
@@ -37,12 +35,6 @@ std::optional<Vec3f> beforeThird(Vec3f crossing, Vec3f slopeA, Vec3f slopeB, con
     const double way = -there / rise;  // from the crossing to the end
     const double before = stopShare * cell_m / (1 + std::abs(way) / cell_m);
     return crossing + (along * (way + std::copysign(before, way))).as<float>();
-}
-
-/// Whether a side of a break may show with the derivative of the piece across it.
-bool mayShowOther(Vec3f side, Vec3f own, Vec3f other) {
-    const Vec3f n = normalized(side);
-    return dot(n, normalized(other)) > otherPiece && dot(n, normalized(own)) < ownPiece;
 }
 
 }  // namespace
@@ -124,33 +116,6 @@ uint64_t FaceCreases::searchSmoothBorders(const std::vector<FaceSegment>& segmen
             gap = crease;
     }
     return evaluations;
-}
-
-/// Within the margin of ties one piece shows with the other's derivative, and so do sides of breaks that lie in it:
-/// these are looked at a little farther on the way to their end.
-uint64_t FaceCreases::lookBesideTies(const std::vector<FaceSegment>& segments, eval::Workspace& workspace) {
-    samples_.clear();
-    std::vector<std::pair<uint32_t, size_t>> sides;  // a gap and its side
-    for (uint32_t g = 0; g < gaps_.size(); ++g) {
-        const Gap& gap = gaps_[g];
-        for (size_t side = 0; side < 2; ++side) {
-            const PiecePoint &own = side == 0 ? gap.a : gap.b, &other = side == 0 ? gap.b : gap.a;
-            const Vec3f shown = (side == 0 ? gap.nearA : gap.nearB).point.gradient;
-            if (!mayShowOther(shown, own.gradient, other.gradient)) continue;
-            sides.emplace_back(g, side);
-            samples_.add(tapes_, segments[gap.segment].brick, between(gap.at, own.at, probeShare));
-        }
-    }
-    samples_.evaluate(workspace);
-    for (size_t i = 0; i < sides.size(); ++i) {
-        Gap& gap = gaps_[sides[i].first];
-        const bool isFirst = sides[i].second == 0;
-        float value;
-        const PiecePoint seen = samples_.point(i, value);
-        if (seen.label != (isFirst ? gap.a : gap.b).label || !isKnown(value)) continue;
-        (isFirst ? gap.nearA : gap.nearB) = {seen, value};
-    }
-    return sides.size();
 }
 
 }  // namespace sgm::mesh

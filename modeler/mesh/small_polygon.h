@@ -22,8 +22,8 @@ public:
     Vec3d doubleArea() const;
     /// Triangulates the polygon over its `normal`, unit, by ears, the best shaped first. Where a triangle of a `curved`
     /// polygon of up to eight corners turns more than 37 degrees from the normal, as beside a corner far off the plane
-    /// of the others, so that the worst triangle is shaped as well as may be.     /// `mayJoin(i, k)`: whether corners
-    /// i and k may have a diagonal. False where there are no ears that face along the normal. O(n³).
+    /// of the others, so that the worst triangle is shaped as well as may be. `mayJoin(i, k)`: whether corners i and
+    /// k may have a diagonal. False where there are no ears that face along the normal. O(n³).
     template <class MayJoin>
     bool triangulate(Vec3d normal, bool curved, MayJoin&& mayJoin) {
         normal_ = normal;

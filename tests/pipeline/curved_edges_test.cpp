@@ -63,7 +63,6 @@ TEST(CurvedEdges, AreSplitWhereTheyAreOffByMoreThanTheTolerance) {
     }
 }
 
-/// As of arches, whose chords are in the hole.
 TEST(CurvedEdges, AreSplitAlongAColumnInCellsOfTwoSizes) {
     // Cells around a plate are halved; the column's piece has more corners where they meet larger ones than at its
     // ends.
@@ -79,6 +78,7 @@ TEST(CurvedEdges, AreSplitAlongAColumnInCellsOfTwoSizes) {
     EXPECT_EQ(shareOff(*mesh, crisp.model, 4 * tolerance_m, 4 * crisp.grid.cell_m), 0);
 }
 
+/// As of arches, whose chords are in the hole.
 TEST(CurvedEdges, OfRoundHolesLeaveTheirVolume) {
     Context context{nullptr, 2};
     CrispModel crisp = crispModel(
