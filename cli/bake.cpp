@@ -178,7 +178,9 @@ void addBake(CLI::App& app, int& exitCode) {
                      "Edge of a cell of the ground's grid, metres; the side is a multiple of 32 of them")
         ->check(between(1e-3, 1e4))
         ->capture_default_str();
-    command->add_option("--object-cell", options->bake.objectCell_m, "The same of objects that `place` puts")
+    command
+        ->add_option("--object-cell", options->bake.objectCell_m,
+                     "Edge of a cell of the grid of each object that `place` puts, metres")
         ->check(between(1e-3, 1e4))
         ->capture_default_str();
     command
@@ -207,7 +209,9 @@ void addMerge(CLI::App& app, int& exitCode) {
     CLI::App* command = app.add_subcommand("merge", "Write the tileset and manifest of a baked folder (3D Tiles 1.1)");
     auto options = std::make_shared<MergeOptions>();
     command->add_option("FOLDER", options->folder, "What `sgm bake` wrote")->required();
-    command->add_option("--at", options->at, "Where the model's origin lies on Earth: LATITUDE,LONGITUDE in degrees");
+    command->add_option(
+        "--at", options->at,
+        "Where the model's origin lies on Earth: LATITUDE,LONGITUDE in degrees [where an earlier merge put it]");
     command
         ->add_option("--for", options->format,
                      "Write the finest cells for other programs too: plain glTF for Blender, USD, height maps")

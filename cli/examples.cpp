@@ -13,6 +13,7 @@
 #include "grammar/language/words.h"
 #include "grammar/pipeline/files.h"
 #include "grammar/syntax/lexer.h"
+#include "modeler/core/atomic_file.h"
 
 namespace sgm::cli {
 namespace fs = std::filesystem;
@@ -85,7 +86,7 @@ int writeNew(const std::string& name, const std::string& kind) {
         std::find_if(std::begin(templates), std::end(templates), [&](const Template& t) { return t.name == kind; });
     std::string text = chosen->text;
     text.replace(text.find("NAME"), 4, titleOf(path.stem().string()));
-    const Status written = pipeline::writeText(path, text);
+    const Status written = writeFile(path, text);
     if (!written.ok()) return fail(written.error());
     const auto inShell = [](const std::string& word) {
         const bool isPlain = std::all_of(word.begin(), word.end(), [](unsigned char c) {

@@ -12,6 +12,7 @@
 #include "grammar/rules/upgrade.h"
 #include "grammar/syntax/parser.h"
 #include "grammar/syntax/printer.h"
+#include "modeler/core/atomic_file.h"
 
 namespace sgm::cli {
 namespace {
@@ -37,7 +38,7 @@ int formatOne(const std::string& file, bool checkOnly, bool upgrade) {
         fmt::print("{} is not formatted; run `sgm fmt {}`\n", file, file);
         return 1;
     }
-    const Status written = pipeline::writeText(file, text);
+    const Status written = writeFile(file, text);
     if (!written.ok()) return fail(written.error());
     fmt::print("formatted {}\n", file);
     return 0;

@@ -15,6 +15,7 @@
 #include "grammar/pipeline/missing.h"
 #include "grammar/rules/params.h"
 #include "grammar/syntax/parser.h"
+#include "modeler/core/atomic_file.h"
 #include "modeler/core/lower_case.h"
 #include "modeler/core/random.h"
 #include "viewer/render/draw.h"
@@ -199,10 +200,14 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
     if (request.pick >= static_cast<int>(found.size()))
         return Error{Error::Kind::Usage,
                      fmt::format("--pick {}: the sheet has 0 … {}", request.pick, found.size() - 1)};
-    const auto source = pipeline::readSource(request.model.file);
-    if (!source.ok()) return source.error();
+    const syntax::SourcePtr& source = grammar.sources[0];
+    const auto now = pipeline::readSource(request.model.file);
+    if (!now.ok()) return now.error();
+    if ((*now)->text() != source->text())
+        return Error{Error::Kind::Input,
+                     fmt::format("'{}' was changed by another program: nothing was saved", request.model.file)};
     syntax::Diagnostics diagnostics;
-    const syntax::Ast ast = syntax::parse(*source, operations::table(), diagnostics);
+    const syntax::Ast ast = syntax::parse(source, operations::table(), diagnostics);
     std::vector<NamedValue> values;
     const auto add = [&](const NamedValue& v) {
         std::erase_if(values, [&](const NamedValue& w) { return w.name == v.name; });
@@ -217,7 +222,7 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
     const std::string start = grammar.symbols[grammar.starts[options->start].symbol].name;
     const auto edit = document::edits::saveStyle(ast, request.save, start, values);
     if (!edit.ok()) return edit.error();
-    return pipeline::writeText(request.model.file, document::applied((*source)->text(), *edit));
+    return writeFile(request.model.file, document::applied(source->text(), *edit));
 }
 
 Status checkRequest(const MutateRequest& request, const rules::Grammar& grammar) {

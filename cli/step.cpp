@@ -14,6 +14,7 @@
 #include "grammar/derive/session.h"
 #include "grammar/derive/way.h"
 #include "grammar/pipeline/files.h"
+#include "modeler/core/atomic_file.h"
 #include "viewer/document/stepper.h"
 
 namespace sgm::cli {
@@ -172,7 +173,7 @@ Status Dialogue::save(const std::string& name) {
     if (!options.ok()) return options.error();
     const auto saved = document::withWay(session_, *grammar_, *options, name, pipeline::fileLoader());
     if (!saved.ok()) return saved.error();
-    if (const Status s = pipeline::writeText(request_.file, saved->text); !s.ok()) return s;
+    if (const Status s = writeFile(request_.file, saved->text); !s.ok()) return s;
     grammar_ = saved->grammar;
     fmt::print("saved; run it with: sgm tree {} --derive {}{}\n", request_.file, name,
                request_.seed == 1 ? "" : fmt::format(" --seed {}", request_.seed));

@@ -21,6 +21,7 @@ Result<Derivation> emptyDerivation(std::shared_ptr<const Grammar> grammar, const
     d.seed = options.seed;
     d.isPlaced = options.isPlaced;
     d.planAlone = options.planAlone;
+    d.way = options.derive;
     d.isAlongWay = !options.derive.empty();
     d.params = options.params.empty() ? rules::valuesOf(*grammar, options.start) : options.params;
     for (size_t i = d.params.size(); i < grammar->params.size(); ++i) d.params.push_back(grammar->params[i].value);

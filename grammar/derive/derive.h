@@ -71,6 +71,7 @@ struct DerivationInput {
     std::vector<rules::Value> params;
     uint32_t start = 0;  ///< index into Grammar::starts
     uint64_t seed = 0;
+    std::string way;          ///< the name of the `derive` way that it follows; empty: none
     bool isPlaced = false;    ///< it is an object of another model, and stands on no ground of its own
     bool planAlone = false;   ///< made with Options::planAlone
     bool isAlongWay = false;  ///< made step by step, as by a `derive` way: what is left live may be meant so

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "grammar/pipeline/bake_digest.h"
 #include "modeler/core/atomic_file.h"
 #include "modeler/core/pages.h"
 #include "modeler/export/exporter.h"
@@ -20,27 +21,6 @@ using tiles::Cell;
 
 /// Objects made between two releases of unused memory: a release takes some milliseconds.
 constexpr size_t objectsPerRelease = 8;
-
-template <class T>
-std::string_view bytesOf(const std::vector<T>& list) {
-    return {reinterpret_cast<const char*>(list.data()), list.size() * sizeof(T)};
-}
-
-/// Everything that decides the bytes of a bake, in one text.
-std::string digestOf(const derive::Derivation& d, const BakeRequest& request) {
-    std::string text;
-    for (const syntax::SourcePtr& source : d.grammar->sources) text += std::string(source->text()) + '\0';
-    for (const image::ImageFilePtr& picture : d.grammar->images)
-        if (picture) text += tiles::digestOf(picture->bytes);
-    for (const rules::Map& map : d.grammar->maps)
-        if (const auto& raster = map.picture.raster)
-            text += tiles::digestOf(bytesOf(raster->grey)) + tiles::digestOf(bytesOf(raster->color)) +
-                    tiles::digestOf(bytesOf(raster->numbers));
-    for (const rules::Value& value : d.params) text += rules::toText(value) + '\0';
-    text += fmt::format("{} {} {:a} {:a} {:a} {} {}", d.start, d.seed, request.side_m, request.cell_m,
-                        request.objectCell_m, request.levels, static_cast<int>(request.packing));
-    return tiles::digestOf(text);
-}
 
 /// Adds the time of its life to a sum.
 class Added {
@@ -73,6 +53,7 @@ Bake::Bake(const Model& model, const BakeRequest& request, Context& context)
       request_(request),
       objects_(std::make_unique<PlacedModels>(model.derivation, request.budget, context)),
       ground_(model, {request.side_m, request.cell_m, request.levels}),
+      parts_(model, request.side_m),
       library_(*objects_, request.folder / "lib", request.objectCell_m, request.packing) {}
 
 Detail Bake::detailOf(int level) const {
@@ -146,6 +127,13 @@ Status Bake::layOut(Context& context) {
     for (const auto& [name, object] : named) used_.push_back(object);
     if (request_.seeksThinParts) library_.inspectFirstOfEachStart();
     return cancelled(context.progress) ? Status(cancelledError()) : Status(Done{});
+}
+
+std::vector<MeshWarning> Bake::warnings() const {
+    std::vector<MeshWarning> all = parts_.warnings(request_.cell_m);
+    const std::vector<MeshWarning> ofObjects = library_.warnings();
+    all.insert(all.end(), ofObjects.begin(), ofObjects.end());
+    return all;
 }
 
 std::vector<int> Bake::missing(int of) const {
@@ -241,7 +229,7 @@ Status Bake::runCells(const std::vector<size_t>& cells, Context& context, const 
         Context own{nullptr, context.threads};
         {
             const Added time(times_.ground);
-            auto made = ground_.make(group, own);
+            auto made = ground_.make(group, request_.seeksThinParts ? &parts_ : nullptr, own);
             if (!made.ok()) return made.error();
             ground = std::move(*made);
         }

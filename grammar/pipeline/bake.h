@@ -48,8 +48,8 @@ public:
     /// Makes some of the plan's cells, by index, and what they need.
     Status runCells(const std::vector<size_t>& cells, Context& context, const CellVisitor& told = nullptr);
     const BakeTimes& times() const { return times_; }
-    /// What the cells of objects lack that this task made, where that is sought.
-    std::vector<MeshWarning> warnings() const { return library_.warnings(); }
+    /// What the ground and the objects lack that this task made, where that is sought.
+    std::vector<MeshWarning> warnings() const;
 
 private:
     Bake(const Model& model, const BakeRequest& request, Context& context);
@@ -67,6 +67,7 @@ private:
     const BakeRequest& request_;
     std::unique_ptr<PlacedModels> objects_;
     BakedGround ground_;
+    GroundParts parts_;
     BakedObjects library_;
     std::vector<PlacedModels::Place> places_;
     std::vector<uint32_t> used_;                             ///< objects that stand somewhere, in the library's order

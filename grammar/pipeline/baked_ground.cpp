@@ -242,7 +242,7 @@ Result<std::vector<mesh::Block>> BakedGround::findBlocks(const std::vector<Cell>
 const eval::Tape& BakedGround::tapeOf(const Cell& cell) { return tapes_.over(cell, workspace_); }
 
 Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const std::vector<Cell>& group,
-                                                                           Context& context) {
+                                                                           GroundParts* parts, Context& context) {
     std::map<Cell, std::vector<tiles::SurfacePiece>> made;
     if (model_.lowered->field.bounds.empty() || group.empty()) return made;
     Vec3i corner;
@@ -261,6 +261,8 @@ Result<std::map<Cell, std::vector<tiles::SurfacePiece>>> BakedGround::make(const
     for (size_t i = 0; i < group.size(); ++i)
         made[group[i]] = tiles::groundPieces(gathered.mesh, gathered.triangles[i], model_.lowered->provenance,
                                              group[i].centre(request_.side_m), pitch);
+    for (size_t i = 0; parts && i < group.size() && group[i].level == 0; ++i)
+        parts->add(group[i], gathered.mesh, gathered.triangles[i]);
     if (request_.levels > 1)
         for (const Cell& cell : group)
             if (auto& pieces = made[cell]; !pieces.empty()) addSkirts(cell, pieces);

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "grammar/pipeline/ground_parts.h"
 #include "grammar/pipeline/model.h"
 #include "grammar/pipeline/square_tapes.h"
 #include "modeler/mesh/subdivide.h"
@@ -41,9 +42,10 @@ public:
     /// The cells whose ground is made together: those of `cells` with the first one's level and parent, for what is
     /// around them is then meshed once. Cells of the coarsest level are made one at a time, for their tapes are long.
     std::vector<tiles::Cell> groupOf(const std::vector<tiles::Cell>& cells) const;
-    /// The pieces of each, about its centre. Errors of mesh::subdivide and mesh::meshBlocks.
+    /// The pieces of each, about its centre. Errors of mesh::subdivide and mesh::meshBlocks. Cells of the finest level
+    /// are told to `parts`, unless it is null.
     Result<std::map<tiles::Cell, std::vector<tiles::SurfacePiece>>> make(const std::vector<tiles::Cell>& group,
-                                                                         Context& context);
+                                                                         GroundParts* parts, Context& context);
     /// Where vertices of a cell's ground may lie once packed, about its centre: places that neighbours share.
     tiles::QuantizationGrid placesOf(const tiles::Cell& cell) const;
     /// Edge of a cell of the grid, metres.

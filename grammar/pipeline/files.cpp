@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
 #include <map>
 #include <optional>
 
 #include "grammar/syntax/lexer.h"
-#include "modeler/core/atomic_file.h"
 #include "modeler/core/installation.h"
 #include "modeler/core/regular_file.h"
 #include "modeler/mesh/distances.h"
@@ -221,12 +218,12 @@ private:
 template <class Read>
 auto besideGrammar(Note note, Read read) {
     using Pointer = std::decay_t<decltype(*read(fs::path()))>;
-    return [note, files = ReadFiles<Pointer>(read)](const std::string& name, const syntax::Source& from,
-                                                    std::string& why) mutable -> Pointer {
+    return [note, files = std::make_shared<ReadFiles<Pointer>>(read)](
+               const std::string& name, const syntax::Source& from, std::string& why) -> Pointer {
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
         note.path(*path);
-        const auto file = files(*path);
+        const auto file = (*files)(*path);
         if (file.ok()) return *file;
         why = note.refusal(file.error());
         return nullptr;
@@ -272,13 +269,13 @@ rules::Loader fileLoader(const Progress* progress, FilesRead* read) {
             why = source.ok() ? "it is no grammar: one begins with 'grammar 1'" : note.refusal(source.error());
             return nullptr;
         });
-    loader.mesh = [note, meshes = Meshes(progress)](const std::string& name, const syntax::Source& from,
-                                                    std::string& why) mutable -> field::SampledGridPtr {
+    loader.mesh = [note, meshes = std::make_shared<Meshes>(progress)](
+                      const std::string& name, const syntax::Source& from, std::string& why) -> field::SampledGridPtr {
         const auto path = pathOf(name, from, why);
         if (!path) return nullptr;
         note.path(*path);
         std::vector<fs::path> files;
-        const auto grid = meshes(*path, files);
+        const auto grid = (*meshes)(*path, files);
         for (const fs::path& file : files) note.path(file);
         if (grid.ok()) return *grid;
         why = note.refusal(grid.error());
@@ -292,17 +289,8 @@ rules::Loader fileLoader(const Progress* progress, FilesRead* read) {
         besideGrammar(note, [progress](const fs::path& path) { return image::readImageFile(path, {}, progress); });
     loader.streets =
         besideGrammar(note, [progress](const fs::path& path) { return shared(town::readStreets(path, progress)); });
-    loader.declares = [names = LibraryNames()](const std::string& name) mutable { return names(name); };
+    loader.declares = [names = std::make_shared<LibraryNames>()](const std::string& name) { return (*names)(name); };
     return loader;
-}
-
-Status writeText(const fs::path& path, const std::string& text) {
-    return replaceFile(path, [&](const fs::path& temporary) -> Status {
-        std::ofstream file(temporary, std::ios::binary);
-        file << text;
-        file.close();
-        return file ? Status(Done{}) : Status(writeError(path, errno ? errno : EIO));
-    });
 }
 
 }  // namespace sgm::pipeline

@@ -23,16 +23,14 @@ struct FilesRead {
 
 /// Finds "std/…" in the standard library shipped with the program and other names beside the file that uses them;
 /// refuses names that lead outside these two folders, also through links, files that aren't regular, and used files
-/// that don't begin as a grammar does, without a word of what they hold. A loader reads a mesh again only when its file
-/// has changed; reading one ends early when `progress` says so. What is asked for is told in `read`, unless it is null;
-/// both outlive the loader.
+/// that don't begin as a grammar does, without a word of what they hold. A loader and its copies share what they
+/// have read, and read a mesh, map, outline or picture again only when its file has changed; one thread at a time may
+/// use them. Reading ends early when `progress` says so. What is asked for is added to `read`, unless it is null; both
+/// outlive the loader.
 rules::Loader fileLoader(const Progress* progress = nullptr, FilesRead* read = nullptr);
 
 /// The files of the standard library as `use` names them, "std/walls.sgm", with their texts, in the order of their
 /// names.
 std::vector<std::pair<std::string, syntax::SourcePtr>> standardFiles();
-
-/// Writes text beside `path` and renames it into place.
-Status writeText(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace sgm::pipeline

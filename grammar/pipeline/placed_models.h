@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <thread>
 #include <unordered_map>
 #include <vector>
 
@@ -16,26 +15,6 @@
 #include "modeler/core/parallel.h"
 
 namespace sgm::pipeline {
-
-/// Progress objects of their own, for work that runs side by side, all cancelled when the one above is.
-class RelayedProgress {
-public:
-    RelayedProgress(const Progress* above, int count) : own_(static_cast<size_t>(count)) {
-        if (!above) return;
-        thread_ = std::jthread([this, above](const std::stop_token& stop) {
-            while (!stop.stop_requested()) {
-                if (above->cancelled())
-                    for (Progress& progress : own_) progress.cancel();
-                std::this_thread::sleep_for(std::chrono::milliseconds(10));
-            }
-        });
-    }
-    Progress* operator[](int worker) { return &own_[static_cast<size_t>(worker)]; }
-
-private:
-    std::deque<Progress> own_;
-    std::jthread thread_;
-};
 
 /// An object with what was made of it.
 struct PlacedModel {
@@ -108,9 +87,9 @@ public:
         const int all = threadCount(context_.threads);
         const int outer = static_cast<int>(std::min<size_t>(count, static_cast<size_t>(all)));
         if (outer == 0) return;
-        RelayedProgress relayed(context_.progress, outer);
-        parallelFor(count, outer, context_.progress, [&](size_t i, int worker) {
-            Context own{relayed[worker], std::max(1, all / outer), {}};
+        parallelFor(count, outer, context_.progress, [&](size_t i, int) {
+            Progress progress(context_.progress);  // whose stages nobody sees: those of several objects run at once
+            Context own{&progress, std::max(1, all / outer), {}};
             work(i, own);
         });
     }

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cerrno>
 #include <ctime>
+#include <fstream>
 #include <mutex>
 #include <set>
 #include <string_view>
@@ -144,12 +145,22 @@ Status replaceFile(const fs::path& target, const std::function<Status(const fs::
     Temporary temporary(folder);
     if (temporary.path().empty()) return writeError(target, errno);
     if (Status status = fill(temporary.path()); !status.ok()) return status;
+    if (const int e = flushToDisk(temporary.path())) return writeError(target, e);  // while it can still be read
     if (replaces && chmod(temporary.path().c_str(), old.st_mode & 07777) != 0) return writeError(target, errno);
-    if (const int e = flushToDisk(temporary.path())) return writeError(target, e);
     if (rename(temporary.path().c_str(), path.c_str()) != 0) return writeError(target, errno);
     temporary.release();
     flushToDisk(folder);  // some file systems can't; the rename stands all the same
     return Done{};
+}
+
+Status writeFile(const fs::path& path, std::string_view bytes) {
+    return replaceFile(path, [&](const fs::path& temporary) -> Status {
+        errno = 0;
+        std::ofstream out(temporary, std::ios::binary);
+        out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        out.close();
+        return out ? Status(Done{}) : Status(writeError(path, errno != 0 ? errno : EIO));
+    });
 }
 
 }  // namespace sgm

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "modeler/core/result.h"
 
@@ -17,6 +18,9 @@ namespace sgm {
 /// (".sgm-<pid>-<n>.tmp"), which the next one that writes into the folder removes once it is a minute old.
 Status replaceFile(const std::filesystem::path& target,
                    const std::function<Status(const std::filesystem::path& temporary)>& fill);
+
+/// Replaces `path` by a file of these bytes, with replaceFile().
+Status writeFile(const std::filesystem::path& path, std::string_view bytes);
 
 /// Whether `replaceFile` could begin: the folder is there and can be written, and what stands at `target` is a regular
 /// file or nothing. The error is that of `replaceFile`.

@@ -65,7 +65,12 @@ public:
         }
         figures_.instances += object.places.size();
         figures_.triangles += held.triangles * object.places.size();
-        const size_t mesh = addLibraryMesh(object, held.file());
+        size_t mesh = 0;
+        try {
+            mesh = addLibraryMesh(object, held.file());
+        } catch (const Json::exception&) {  // a member of another type
+            return damagedFile(object.path);
+        }
         if (content_.asNodes) {
             for (size_t i = 0; i < object.places.size(); ++i)
                 addNode(placeNode(object, *object.places[i].part, mesh, translations[i], rotations[i]));
@@ -244,7 +249,7 @@ private:
 
 Vec3d vectorOf(const Json& node, const char* key, Vec3d fallback) {
     if (!node.contains(key)) return fallback;
-    return {node[key][0].get<double>(), node[key][1].get<double>(), node[key][2].get<double>()};
+    return {node[key].at(0).get<double>(), node[key].at(1).get<double>(), node[key].at(2).get<double>()};
 }
 
 /// What cells take over of a file's JSON.
@@ -255,12 +260,34 @@ Json withoutTheRest(const Json& json) {
     return kept;
 }
 
-Result<Library::Entry> readEntry(const std::filesystem::path& path) {
-    auto read = readGlb(path);
-    if (!read.ok()) return read.error();
-    const Json& json = read->json;
-    if (!json.contains("meshes") || !json.contains("nodes") || !json.contains("accessors"))
-        return Error{Error::Kind::Input, "'" + path.string() + "' holds no mesh: remove it, so that it is made anew"};
+/// Whether a file's mesh, accessors, views and materials lead to one another: what cells take over is looked up without
+/// another look. Throws Json's exceptions.
+bool isWhole(const Json& json) {
+    const auto leads = [](const Json& index, const Json& list) {
+        return index.is_number_unsigned() && index.get<uint64_t>() < list.size();
+    };
+    const Json &accessors = json.at("accessors"), &views = json.at("bufferViews"), &materials = json.at("materials");
+    for (const Json& view : views) {
+        if (!view.contains("extensions")) continue;
+        const Json& packed = view["extensions"].at("EXT_meshopt_compression");
+        if (!packed.at("byteOffset").is_number_unsigned() || !view.at("byteOffset").is_number_unsigned() ||
+            !view.at("byteLength").is_number_unsigned())
+            return false;
+    }
+    for (const Json& accessor : accessors)
+        if (!leads(accessor.at("bufferView"), views) || !accessor.at("count").is_number_unsigned()) return false;
+    for (const Json& primitive : json.at("meshes").at(0).at("primitives")) {
+        if (!primitive.at("attributes").contains("POSITION") || !leads(primitive.at("indices"), accessors) ||
+            !leads(primitive.at("material"), materials))
+            return false;
+        for (const Json& attribute : primitive["attributes"])
+            if (!leads(attribute, accessors)) return false;
+    }
+    return json.at("nodes").at(0).is_object();
+}
+
+Library::Entry entryOf(const Glb& file) {
+    const Json& json = file.json;
     Library::Entry entry;
     entry.grid.origin = vectorOf(json["nodes"][0], "translation", {});
     entry.grid.step = vectorOf(json["nodes"][0], "scale", {1, 1, 1});
@@ -273,8 +300,18 @@ Result<Library::Entry> readEntry(const std::filesystem::path& path) {
     entry.name = json["meshes"][0].value("name", "object");
     entry.json = Json::to_cbor(withoutTheRest(json));
     entry.json.shrink_to_fit();
-    entry.bytesAt = read->bytesAt, entry.fileBytes = read->fileBytes;
+    entry.bytesAt = file.bytesAt, entry.fileBytes = file.fileBytes;
     return entry;
+}
+
+Result<Library::Entry> readEntry(const std::filesystem::path& path) {
+    const auto file = readGlb(path);
+    if (!file.ok()) return file.error();
+    try {
+        if (isWhole(file->json)) return entryOf(*file);
+    } catch (const Json::exception&) {  // a member that isn't there or of another type
+    }
+    return damagedFile(path);
 }
 
 }  // namespace

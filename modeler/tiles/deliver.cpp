@@ -85,7 +85,7 @@ private:
 }  // namespace
 
 Status deliver(const fs::path& folder, Delivery delivery, Progress* progress) {
-    if (delivery == Delivery::Heights) return writeHeights(folder);
+    if (delivery == Delivery::Heights) return writeHeights(folder, progress);
     const auto plan = readPlan(folder);
     if (!plan.ok()) return plan.error();
     Writer writer(folder, *plan, delivery == Delivery::Usd);

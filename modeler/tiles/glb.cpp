@@ -45,37 +45,35 @@ Result<Glb> readGlb(const std::filesystem::path& path) {
     return glb;
 }
 
+Error damagedFile(const std::filesystem::path& path) {
+    return {Error::Kind::Input, fmt::format("'{}' isn't as it was baked: remove it and bake anew", path.string())};
+}
+
 Status writeGlb(Glb glb, const std::filesystem::path& path) {
     glb.bytes.resize((glb.bytes.size() + 3) / 4 * 4, 0);
     if (!glb.bytes.empty()) glb.json["buffers"][0]["byteLength"] = glb.bytes.size();
     std::string text = glb.json.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const size_t binary = glb.bytes.empty() ? 0 : 8 + glb.bytes.size();
-    return replaceFile(path, [&](const std::filesystem::path& temporary) -> Status {
-        std::ofstream out(temporary, std::ios::binary);
-        const auto put = [&](size_t v) {
-            const auto word = static_cast<uint32_t>(v);
-            out.write(reinterpret_cast<const char*>(&word), sizeof word);
-        };
-        for (const size_t v :
-             {size_t{magic}, size_t{version}, 20 + text.size() + binary, text.size(), size_t{jsonChunk}})
-            put(v);
-        out.write(text.data(), static_cast<std::streamsize>(text.size()));
-        if (binary > 0) {
-            put(glb.bytes.size());
-            put(binaryChunk);
-            out.write(reinterpret_cast<const char*>(glb.bytes.data()), static_cast<std::streamsize>(glb.bytes.size()));
-        }
-        return out.flush() ? Status(Done{}) : Status(writeError(path, errno));
-    });
+    std::string file;
+    file.reserve(20 + text.size() + binary);
+    const auto put = [&](size_t v) {
+        const auto word = static_cast<uint32_t>(v);
+        file.append(reinterpret_cast<const char*>(&word), sizeof word);
+    };
+    for (const size_t v : {size_t{magic}, size_t{version}, 20 + text.size() + binary, text.size(), size_t{jsonChunk}})
+        put(v);
+    file += text;
+    if (binary > 0) {
+        put(glb.bytes.size());
+        put(binaryChunk);
+        file.append(glb.bytes.begin(), glb.bytes.end());
+    }
+    return writeFile(path, file);
 }
 
 Status writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
-    return replaceFile(path, [&](const std::filesystem::path& temporary) -> Status {
-        std::ofstream out(temporary, std::ios::binary);
-        out << json.dump(1) << '\n';
-        return out.flush() ? Status(Done{}) : Status(writeError(path, errno));
-    });
+    return writeFile(path, json.dump(1) + '\n');
 }
 
 }  // namespace sgm::tiles

@@ -21,6 +21,8 @@ struct Glb {
 
 /// Error::Input for a file that can't be read or isn't a .glb.
 Result<Glb> readGlb(const std::filesystem::path& path);
+/// What to say of a file of a bake that somebody changed: Error::Input that says to remove it and bake anew.
+Error damagedFile(const std::filesystem::path& path);
 /// Writes the file, all or nothing; the length of buffer 0 becomes that of the bytes.
 Status writeGlb(Glb glb, const std::filesystem::path& path);
 /// Writes JSON as text, all or nothing.

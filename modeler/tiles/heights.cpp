@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -80,11 +78,7 @@ struct Scale {
 
 Status writeRaw(const fs::path& path, const std::vector<uint16_t>& samples) {
     static_assert(std::endian::native == std::endian::little);
-    return replaceFile(path, [&](const fs::path& temporary) -> Status {
-        std::ofstream out(temporary, std::ios::binary);
-        out.write(reinterpret_cast<const char*>(samples.data()), static_cast<std::streamsize>(2 * samples.size()));
-        return out.flush() ? Status(Done{}) : Status(writeError(path, errno));
-    });
+    return writeFile(path, {reinterpret_cast<const char*>(samples.data()), 2 * samples.size()});
 }
 
 Status writeGrey16(const fs::path& path, int side, const std::vector<uint16_t>& samples) {
@@ -100,9 +94,11 @@ Status writeGrey16(const fs::path& path, int side, const std::vector<uint16_t>& 
 }
 
 /// The lowest and the highest place of the ground of all finest cells, by what their files say of it.
-Result<std::pair<double, double>> groundHeights(const fs::path& folder, const BakePlan& plan) {
+Result<std::pair<double, double>> groundHeights(const fs::path& folder, const BakePlan& plan,
+                                                const Progress* progress) {
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
     for (const Cell& cell : plan.cells) {
+        if (cancelled(progress)) return cancelledError();
         std::error_code ignored;
         const fs::path file = contentFile(folder, cell);
         if (cell.level != 0 || !fs::exists(file, ignored)) continue;
@@ -118,13 +114,15 @@ Result<std::pair<double, double>> groundHeights(const fs::path& folder, const Ba
 }
 
 /// All heights of the ground of a square, from its cells and those around it, which share its border.
-Result<Heights> sampled(const fs::path& folder, const BakePlan& plan, const Cell& square, Library& library) {
+Result<Heights> sampled(const fs::path& folder, const BakePlan& plan, const Cell& square, Library& library,
+                        const Progress* progress) {
     const double side = square.side_m(plan.side_m);
     Heights heights(square.centre(plan.side_m) - Vec3d{side / 2, 0, side / 2}, plan.cell_m,
                     static_cast<int>(std::lround(side / plan.cell_m)) + 1);
     const int across = 1 << square.level;
     for (int z = -1; z <= across; ++z)
         for (int x = -1; x <= across; ++x) {
+            if (cancelled(progress)) return cancelledError();
             const Cell cell{0, square.x * across + x, square.z * across + z};
             std::error_code ignored;
             if (!fs::exists(contentFile(folder, cell), ignored)) continue;
@@ -137,7 +135,7 @@ Result<Heights> sampled(const fs::path& folder, const BakePlan& plan, const Cell
 
 }  // namespace
 
-Status writeHeights(const fs::path& folder) {
+Status writeHeights(const fs::path& folder, Progress* progress) {
     const auto plan = readPlan(folder);
     if (!plan.ok()) return plan.error();
     for (const Cell& cell : plan->cells)
@@ -145,7 +143,7 @@ Status writeHeights(const fs::path& folder) {
             return Error{Error::Kind::Input,
                          fmt::format("'{}' isn't there yet: bake the cells that `sgm bake --missing` names",
                                      noteFile(folder, cell).string())};
-    const auto bounds = groundHeights(folder, *plan);
+    const auto bounds = groundHeights(folder, *plan, progress);
     if (!bounds.ok()) return bounds.error();
     // Step 0 is no ground, so the lowest one lies at step 1.
     const double step = std::max((bounds->second - bounds->first) / 65533, 1e-4);
@@ -156,9 +154,14 @@ Status writeHeights(const fs::path& folder) {
     const int top = static_cast<int>(plan->errors_m.size()) - 1;
     Library library;
     Json files = Json::array();
+    if (progress)
+        progress->begin("write",
+                        static_cast<uint64_t>(std::count_if(plan->cells.begin(), plan->cells.end(),
+                                                            [top](const Cell& cell) { return cell.level == top; })));
     for (const Cell& square : plan->cells) {
         if (square.level != top) continue;
-        const auto heights = sampled(folder, *plan, square, library);
+        tick(progress);
+        const auto heights = sampled(folder, *plan, square, library, progress);
         if (!heights.ok()) return heights.error();
         std::vector<uint16_t> samples;
         for (const float h : heights->all()) samples.push_back(scale.of(h));

@@ -5,13 +5,14 @@
 
 #include <filesystem>
 
+#include "modeler/core/progress.h"
 #include "modeler/core/result.h"
 
 namespace sgm::tiles {
 
 /// Writes heights/X_Z.r16 and .png of every coarsest cell of a baked folder, sampled every `cell_m` of its grid, and
 /// heights/heights.json, which says metres a step, height 0 and what lies where. Samples without ground are 0.
-/// Error::Input where cells are missing.
-Status writeHeights(const std::filesystem::path& folder);
+/// Error::Input where cells are missing, Error::Cancelled when `progress` says so, between two cells.
+Status writeHeights(const std::filesystem::path& folder, Progress* progress = nullptr);
 
 }  // namespace sgm::tiles

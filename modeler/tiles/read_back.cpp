@@ -14,13 +14,19 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-Error broken(const fs::path& path) {
-    return {Error::Kind::Input, "'" + path.string() + "' isn't as it was baked: remove it and bake anew"};
-}
+/// More elements than a packed byte ever stands for: the vertex codec packs 16 elements into a few bits at least.
+constexpr size_t mostPerByte = 1024;
 
 /// The numbers of a file, by accessor. Throws nlohmann's exceptions, std::out_of_range and Broken for what no bake
 /// wrote.
 struct Broken {};
+
+/// A number of a file that counts something; Json would turn others into one, -1 into 2⁶⁴ − 1.
+size_t wholeNumber(const Json& json) {
+    if (!json.is_number_unsigned()) throw Broken{};
+    return json.get<size_t>();
+}
+
 class Numbers {
 public:
     explicit Numbers(const Glb& glb) : glb_(glb) {}
@@ -28,13 +34,17 @@ public:
     /// `components` an element.
     std::vector<double> of(size_t accessor, size_t components) const {
         const Json& facts = glb_.json.at("accessors").at(accessor);
-        const size_t view = facts.at("bufferView"), count = facts.at("count"), type = facts.at("componentType");
+        const size_t view = wholeNumber(facts.at("bufferView")), count = wholeNumber(facts.at("count")),
+                     type = wholeNumber(facts.at("componentType"));
         const bool normalized = facts.value("normalized", false);
         const std::vector<uint8_t> bytes = viewOf(view);
         const size_t size = type == 5120 || type == 5121 ? 1 : type == 5123 ? 2 : 4;
-        const size_t stride = glb_.json["bufferViews"][view].value("byteStride", components * size);
-        const size_t first = facts.value("byteOffset", size_t{0});
-        if (count > 0 && first + (count - 1) * stride + components * size > bytes.size()) throw Broken{};
+        const Json& viewFacts = glb_.json.at("bufferViews").at(view);
+        const size_t width = components * size;
+        const size_t stride = viewFacts.contains("byteStride") ? wholeNumber(viewFacts["byteStride"]) : width;
+        const size_t first = facts.contains("byteOffset") ? wholeNumber(facts["byteOffset"]) : 0;
+        if (stride < width || first > bytes.size() || count > (bytes.size() - first + stride - width) / stride)
+            throw Broken{};
         std::vector<double> out;
         out.reserve(count * components);
         for (size_t i = 0; i < count; ++i)
@@ -54,7 +64,7 @@ public:
     /// Texts of a column of the table of places.
     std::vector<std::string> texts(const Json& column, size_t rows) const {
         const std::vector<uint8_t> bytes = viewOf(column.at("values")), ends = viewOf(column.at("stringOffsets"));
-        if (ends.size() < 4 * (rows + 1)) throw Broken{};
+        if (rows >= ends.size() / 4) throw Broken{};
         std::vector<std::string> out;
         for (size_t i = 0; i < rows; ++i) {
             const auto from = load<uint32_t>(ends.data() + 4 * i), to = load<uint32_t>(ends.data() + 4 * i + 4);
@@ -65,7 +75,7 @@ public:
     }
     std::vector<uint32_t> words(const Json& column, size_t rows) const {
         const std::vector<uint8_t> bytes = viewOf(column.at("values"));
-        if (bytes.size() < 4 * rows) throw Broken{};
+        if (rows > bytes.size() / 4) throw Broken{};
         std::vector<uint32_t> out(rows);
         std::memcpy(out.data(), bytes.data(), 4 * rows);
         return out;
@@ -79,24 +89,32 @@ private:
         return value;
     }
 
+    /// What meshoptimizer's decoders take: they don't judge it themselves.
+    static bool isDecodable(size_t count, size_t stride, bool isTriangles, const std::string& filter) {
+        if (isTriangles) return count % 3 == 0 && (stride == 2 || stride == 4) && filter.empty();
+        if (filter == "OCTAHEDRAL") return stride == 4 || stride == 8;
+        return stride > 0 && stride <= 256 && stride % 4 == 0;
+    }
+
     /// A view of the file's own buffer, unpacked.
     std::vector<uint8_t> viewOf(size_t index) const {
         const Json& view = glb_.json.at("bufferViews").at(index);
         const bool isPacked = view.contains("extensions");
         const Json& facts = isPacked ? view["extensions"].at("EXT_meshopt_compression") : view;
-        const size_t offset = facts.value("byteOffset", size_t{0}), length = facts.at("byteLength");
+        const size_t offset = facts.contains("byteOffset") ? wholeNumber(facts["byteOffset"]) : 0,
+                     length = wholeNumber(facts.at("byteLength"));
         if (facts.at("buffer") != 0 || offset > glb_.bytes.size() || length > glb_.bytes.size() - offset)
             throw Broken{};
         const uint8_t* from = glb_.bytes.data() + offset;
         if (!isPacked) return {from, from + length};
-        const size_t count = facts.at("count"), stride = facts.at("byteStride");
-        if (count > (size_t{1} << 31) || stride > 256) throw Broken{};
-        std::vector<uint8_t> out(count * stride);
+        const size_t count = wholeNumber(facts.at("count")), stride = wholeNumber(facts.at("byteStride"));
         const bool isTriangles = facts.at("mode") == "TRIANGLES";
+        const std::string filter = facts.value("filter", "");
+        if (!isDecodable(count, stride, isTriangles, filter) || count / mostPerByte > length) throw Broken{};
+        std::vector<uint8_t> out(count * stride);
         const int failed = isTriangles ? meshopt_decodeIndexBuffer(out.data(), count, stride, from, length)
                                        : meshopt_decodeVertexBuffer(out.data(), count, stride, from, length);
         if (failed != 0) throw Broken{};
-        const std::string filter = facts.value("filter", "");
         if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), count, stride);
         if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(out.data(), count, stride);
         return out;
@@ -126,8 +144,8 @@ std::shared_ptr<const image::Texture> textureOf(const Json& material, const Glb&
     bool any = false;
     const auto read = [&](const Json& where, const char* slot, image::ImageFilePtr& picture) {
         if (!where.contains(slot)) return;
-        const Json& json = glb.json.at("textures").at(where[slot].at("index").get<size_t>());
-        const std::string uri = glb.json.at("images").at(json.at("source").get<size_t>()).at("uri");
+        const Json& json = glb.json.at("textures").at(wholeNumber(where[slot].at("index")));
+        const std::string uri = glb.json.at("images").at(wholeNumber(json.at("source"))).at("uri");
         auto file = image::readImageFile(folder / uri);
         if (!file.ok()) throw Broken{};
         picture = std::move(*file);
@@ -177,16 +195,19 @@ std::vector<SurfacePiece> piecesOf(const Glb& glb, const Json& mesh, const Quant
         const auto n = numbers.of(primitive.at("attributes").at("NORMAL"), 3);
         auto corners = numbers.of(primitive.at("indices"), 1);
         if (primitive.contains("extras")) {
-            const size_t skirts = primitive["extras"].value("skirtTriangles", size_t{0});
+            const size_t skirts =
+                primitive["extras"].contains("skirtTriangles") ? wholeNumber(primitive["extras"]["skirtTriangles"]) : 0;
             if (skirts > corners.size() / 3) throw Broken{};
             corners.resize(corners.size() - 3 * skirts);
         }
         SurfacePiece piece;
-        piece.material = primitive.at("material");
+        const size_t material = wholeNumber(primitive.at("material"));
+        if (material >= glb.json.at("materials").size()) throw Broken{};
+        piece.material = static_cast<uint32_t>(material);
         std::vector<uint32_t> local(p.size() / 3, 0xffffffffu), used;  // primitives share their vertices
         for (const double corner : corners) {
+            if (!(corner >= 0 && corner < double(local.size())) || n.size() != p.size()) throw Broken{};
             const auto vertex = static_cast<size_t>(corner);
-            if (3 * vertex + 2 >= p.size() || 3 * vertex + 2 >= n.size()) throw Broken{};
             if (local[vertex] == 0xffffffffu) {
                 local[vertex] = static_cast<uint32_t>(piece.positions.size());
                 used.push_back(static_cast<uint32_t>(vertex));
@@ -222,7 +243,7 @@ std::deque<Part> partsOf(const Glb& glb) {
     if (!glb.json.contains("extensions")) return parts;
     const Json& table = glb.json["extensions"].at("EXT_structural_metadata").at("propertyTables").at(0);
     const Json& columns = table.at("properties");
-    const size_t rows = table.at("count");
+    const size_t rows = wholeNumber(table.at("count"));
     const Numbers numbers(glb);
     const auto paths = numbers.texts(columns.at("path"), rows), rules = numbers.texts(columns.at("rule"), rows),
                files = numbers.texts(columns.at("file"), rows);
@@ -244,13 +265,13 @@ CellObject objectOf(const Glb& glb, const Json& node, const fs::path& path, Libr
     const double step = vectorOf(node, "scale", {1, 1, 1}).x;
     CellObject object;
     // The accessors of an object's mesh lie in the buffer of its file.
-    const Json& mesh = glb.json.at("meshes").at(node.at("mesh").get<size_t>());
+    const Json& mesh = glb.json.at("meshes").at(wholeNumber(node.at("mesh")));
     const Json& position =
-        glb.json["accessors"].at(mesh.at("primitives").at(0).at("attributes").at("POSITION").get<size_t>());
-    const Json& view = glb.json["bufferViews"].at(position.at("bufferView").get<size_t>());
+        glb.json["accessors"].at(wholeNumber(mesh.at("primitives").at(0).at("attributes").at("POSITION")));
+    const Json& view = glb.json["bufferViews"].at(wholeNumber(position.at("bufferView")));
     const size_t buffer = view.contains("extensions")
-                              ? view["extensions"].at("EXT_meshopt_compression").at("buffer").get<size_t>()
-                              : view.at("buffer").get<size_t>();
+                              ? wholeNumber(view["extensions"].at("EXT_meshopt_compression").at("buffer"))
+                              : wholeNumber(view.at("buffer"));
     object.file = glb.json.at("buffers").at(buffer).at("uri");
     object.path = path.parent_path() / object.file;
     object.values = valuesOf(node);
@@ -261,7 +282,8 @@ CellObject objectOf(const Glb& glb, const Json& node, const fs::path& path, Libr
         origin = (*held)->grid.origin;
     }
     for (size_t i = 0; i < ids.size(); ++i) {
-        Part& part = parts.at(static_cast<size_t>(ids[i]));
+        if (!(ids[i] >= 0 && ids[i] < double(parts.size()))) throw Broken{};
+        Part& part = parts[static_cast<size_t>(ids[i])];
         const Mat3 turn = turnOf(&r.at(4 * i));
         part.pose = {Vec3d{t.at(3 * i), t.at(3 * i + 1), t.at(3 * i + 2)} * step - turn * origin, turn};
         object.places.push_back({&part});
@@ -279,7 +301,7 @@ Result<T> read(const fs::path& path, Work work) {
     } catch (const nlohmann::json::exception&) {
     } catch (const std::out_of_range&) {
     }
-    return broken(path);
+    return damagedFile(path);
 }
 
 }  // namespace
@@ -299,9 +321,8 @@ Result<LibraryObject> readObject(const fs::path& path) {
 Result<ReadCell> readCell(const fs::path& path, Library& library) {
     return read<ReadCell>(path, [&](const Glb& glb) {
         ReadCell cell;
-        cell.content.packing = glb.json["buffers"].size() > 1 && !glb.json["buffers"][1].contains("uri")
-                                   ? Packing::Meshopt
-                                   : Packing::None;
+        const Json& buffers = glb.json.at("buffers");
+        cell.content.packing = buffers.size() > 1 && !buffers[1].contains("uri") ? Packing::Meshopt : Packing::None;
         cell.content.materials = materialsOf(glb, path.parent_path());
         cell.parts = partsOf(glb);
         for (const Json& node : glb.json.at("nodes")) {
@@ -309,7 +330,7 @@ Result<ReadCell> readCell(const fs::path& path, Library& library) {
             if (node.contains("extensions"))
                 cell.content.objects.push_back(objectOf(glb, node, path, library, cell.parts));
             else
-                cell.content.ground = piecesOf(glb, glb.json.at("meshes").at(node["mesh"].get<size_t>()), gridOf(node));
+                cell.content.ground = piecesOf(glb, glb.json.at("meshes").at(wholeNumber(node["mesh"])), gridOf(node));
         }
         return cell;
     });
@@ -320,8 +341,8 @@ Result<std::optional<Box3d>> groundBounds(const fs::path& path) {
         for (const Json& node : glb.json.at("nodes")) {
             if (!node.contains("mesh") || node.contains("extensions")) continue;
             const QuantizationGrid grid = gridOf(node);
-            const Json& mesh = glb.json.at("meshes").at(node["mesh"].get<size_t>());
-            const size_t accessor = mesh.at("primitives").at(0).at("attributes").at("POSITION");
+            const Json& mesh = glb.json.at("meshes").at(wholeNumber(node["mesh"]));
+            const size_t accessor = wholeNumber(mesh.at("primitives").at(0).at("attributes").at("POSITION"));
             const Json& position = glb.json.at("accessors").at(accessor);
             return Box3d{grid.origin + grid.step * vectorOf(position, "min", {}),
                          grid.origin + grid.step * vectorOf(position, "max", {})};

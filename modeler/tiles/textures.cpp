@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "modeler/core/atomic_file.h"
 #include "modeler/image/texture_axes.h"
@@ -82,12 +81,7 @@ Status writePictures(const std::vector<Material>& materials, const fs::path& fol
         for (const image::ImageFilePtr& picture : picturesOf(*material.texture)) {
             const fs::path path = folder / fileNameOf(*picture);
             if (fs::exists(path, failed)) continue;
-            const Status written = replaceFile(path, [&](const fs::path& temporary) -> Status {
-                std::ofstream out(temporary, std::ios::binary);
-                out.write(picture->bytes.data(), static_cast<std::streamsize>(picture->bytes.size()));
-                return out.flush() ? Status(Done{}) : Status(writeError(path, errno));
-            });
-            if (!written.ok()) return written;
+            if (const Status written = writeFile(path, picture->bytes); !written.ok()) return written;
         }
     }
     return Done{};

@@ -63,8 +63,8 @@ bool isSound(const BakePlan& plan) {
     constexpr int farthest = 1 << 20;
     return !plan.errors_m.empty() && plan.errors_m.size() <= mostLevels && plan.side_m > 0 && plan.side_m <= 1e5 &&
            std::all_of(plan.cells.begin(), plan.cells.end(), [&](const Cell& cell) {
-               return cell.level < static_cast<int>(plan.errors_m.size()) && std::abs(cell.x) <= farthest &&
-                      std::abs(cell.z) <= farthest;
+               return cell.level < static_cast<int>(plan.errors_m.size()) && cell.x >= -farthest &&
+                      cell.x <= farthest && cell.z >= -farthest && cell.z <= farthest;
            });
 }
 
@@ -208,6 +208,18 @@ private:
     std::map<Cell, Note> notes_;
 };
 
+/// Where an earlier merge put the city on the earth, as the tileset says it; null where it didn't.
+Json transformIn(const fs::path& folder) {
+    const auto text = textOf(folder / "tileset.json");
+    const Json tileset = text ? Json::parse(*text, nullptr, false) : Json();
+    const auto pointer = Json::json_pointer("/root/transform");
+    if (!tileset.is_object() || !tileset.contains(pointer)) return {};
+    const Json& transform = tileset.at(pointer);
+    const bool isMatrix = transform.is_array() && transform.size() == 16 &&
+                          std::all_of(transform.begin(), transform.end(), [](const Json& v) { return v.is_number(); });
+    return isMatrix ? transform : Json();
+}
+
 Status checkDigest(const fs::path& folder, const Cell& cell, const Note& note) {
     if (note.figures.empty()) return Done{};
     const auto bytes = textOf(contentFile(folder, cell));
@@ -313,7 +325,8 @@ Status merge(const fs::path& folder, const std::optional<EarthPlace>& at, bool v
         bytes += held.size();
     }
     Json root = Tree(*plan, notes).root();
-    if (at) root["transform"] = toEarth(*at);
+    if (Json transform = at ? toEarth(*at) : transformIn(folder); !transform.is_null())
+        root["transform"] = std::move(transform);
     const Json tileset{{"asset", {{"version", "1.1"}, {"generator", "sgm"}}},
                        {"geometricError", 16 * plan->errors_m.back()},
                        {"root", std::move(root)}};

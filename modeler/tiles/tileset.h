@@ -45,8 +45,8 @@ struct EarthPlace {
     double latitude_deg = 0, longitude_deg = 0;
 };
 
-/// Writes tileset.json and manifest.json. With `verify` the digests of all files are taken anew. Error::Input names the
-/// first cell that is missing or differs.
+/// Writes tileset.json and manifest.json. Without a place the tileset stays where an earlier merge put it. With
+/// `verify` the digests of all files are taken anew. Error::Input names the first cell that is missing or differs.
 Status merge(const std::filesystem::path& folder, const std::optional<EarthPlace>& at, bool verify);
 
 /// 32 hexadecimal digits that follow from the bytes.

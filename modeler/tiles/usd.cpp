@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
 #include <set>
 
 #include "modeler/core/atomic_file.h"
@@ -13,14 +11,6 @@ namespace sgm::tiles {
 namespace {
 
 namespace fs = std::filesystem;
-
-Status writeText(const fs::path& path, const std::string& text) {
-    return replaceFile(path, [&](const fs::path& temporary) -> Status {
-        std::ofstream out(temporary, std::ios::binary);
-        out << text;
-        return out.flush() ? Status(Done{}) : Status(writeError(path, errno));
-    });
-}
 
 std::string header(const char* prim) {
     return fmt::format("#usda 1.0\n(\n    defaultPrim = \"{}\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n",
@@ -142,7 +132,7 @@ Status writeUsdObject(const LibraryObject& object, const fs::path& path) {
         std::replace(word.begin(), word.end(), ' ', '_');
         values += fmt::format("        string {} = {}\n", word, quoted(value));
     }
-    return writeText(path, header("Object") + "def Xform \"Object\" (\n    displayName = " + quoted(object.name) +
+    return writeFile(path, header("Object") + "def Xform \"Object\" (\n    displayName = " + quoted(object.name) +
                                "\n    kind = \"component\"\n    customData = {\n" + values + "    }\n)\n{\n" +
                                meshOf("Surface", object.pieces, object.materials, "/Object/Looks") + "}\n");
 }
@@ -151,7 +141,7 @@ Status writeUsdCell(const CellContent& content, const fs::path& path) {
     std::string text = header("Cell") + "def Xform \"Cell\"\n{\n";
     if (!content.ground.empty()) text += meshOf("Ground", content.ground, content.materials, "/Cell/Looks");
     if (!content.objects.empty()) text += instancerOf(content);
-    return writeText(path, text + "}\n");
+    return writeFile(path, text + "}\n");
 }
 
 Status writeUsdStage(const std::vector<UsdPayload>& cells, const fs::path& path) {
@@ -162,7 +152,7 @@ Status writeUsdStage(const std::vector<UsdPayload>& cells, const fs::path& path)
             "        double3 xformOp:translate = ({}, {}, {})\n"
             "        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n    }}\n",
             cell.name, cell.file, cell.centre.x, cell.centre.y, cell.centre.z);
-    return writeText(path, text + "}\n");
+    return writeFile(path, text + "}\n");
 }
 
 }  // namespace sgm::tiles

@@ -81,6 +81,24 @@ TEST_F(BakeProgram, NamesWhatTheCellsOfObjectsLack) {
     EXPECT_FALSE(names("-q -o " + path("other")));
 }
 
+TEST_F(BakeProgram, NamesWhatTheCellsOfTheGroundLack) {
+    const std::string file = grammar(
+        "terminal lawn color #86a35f\nterminal rock color #808080\n"
+        "start Town -> lawn size (100m, .5m, 100m) move (0, .7m, 0), rock size (60m, 8m, 20m) move (0, 4m, 0), "
+        "rock size (90m, .2m, 90m) move (0, .6m, 0)\n");
+    const auto told = [&](const std::string& cell) {
+        std::filesystem::remove_all(path("city" + cell));
+        return sgm("bake " + file + " --side 64 --cell " + cell + " -o " + path("city" + cell)).out;
+    };
+    EXPECT_NE(
+        told("2").find("nothing of 'lawn' shows in the ground: it is 0.5 m thick, and the ground's cells are 2 m: "
+                       "--cell 0.25 holds it"),
+        std::string::npos)
+        << told("2");
+    EXPECT_EQ(told("1").find("'rock'"), std::string::npos) << "the thin one lies within the lawn";
+    EXPECT_EQ(told("0.25").find("shows"), std::string::npos);
+}
+
 TEST_F(BakeProgram, SaysWhatIsWrong) {
     const std::string file = grammar(town);
     const auto refused = [&](const std::string& words, int code, const std::string& why) {
@@ -99,6 +117,32 @@ TEST_F(BakeProgram, SaysWhatIsWrong) {
     refused("serve " + path("a"), 1, "sgm merge");
     refused("serve " + path("a") + " --port 70000", 2, "70000");
     refused("merge --for blend " + path("a"), 2, "blend");
+}
+
+TEST_F(BakeProgram, RefusesAFolderWhereFilesOfTheGrammarHaveChanged) {
+    const auto write = [&](double corner) {
+        scratch_.write("lot.svg", "<svg><polygon points=\"0,0 20,0 20," + std::to_string(corner) + " 0,12\"/></svg>");
+        scratch_.write("wedge.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 " + std::to_string(corner) +
+                                        " 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n");
+    };
+    for (const std::string text : {"start A -> footprint file(\"lot.svg\", 1) extrude 9m block\n",
+                                   "start A -> mesh(\"wedge.obj\") size (20, 9, 20)\n"}) {
+        write(12);
+        const std::string bake = "bake " + grammar(text) + " -q -o " + path("city") + options();
+        ASSERT_EQ(sgm(bake).code, 0) << sgm(bake).out;
+        EXPECT_EQ(sgm(bake).code, 0);
+        write(11);
+        const Outcome run = sgm(bake);
+        EXPECT_EQ(run.code, 1) << text;
+        EXPECT_NE(run.out.find("of another model"), std::string::npos) << run.out;
+        std::filesystem::remove_all(path("city"));
+    }
+    const std::string ways = grammar(
+        "start A -> A0\nrule One: A0 -> cube size 4m\nrule Two: A0 -> cube size 5m\n"
+        "derive first: One\nderive second: Two\n");
+    const std::string bake = "bake " + ways + " -q -o " + path("city") + options();
+    ASSERT_EQ(sgm(bake + "--derive first").code, 0) << sgm(bake + "--derive first").out;
+    EXPECT_EQ(sgm(bake + "--derive second").code, 1);
 }
 
 /// A file of /proc, as far as it can be read: its process may end meanwhile, which a stream throws.

@@ -125,6 +125,10 @@ TEST(Bake, GivesPlainFilesUsdAndHeightsOfTheSameGround) {
     const Scratch folder;
     baked.run(folder.path(), {1, 1}, 2);
     baked.merge(folder.path());
+    const json placed = json::parse(folder.read("tileset.json"))["root"]["transform"];
+    ASSERT_EQ(placed.size(), 16u);
+    ASSERT_TRUE(tiles::merge(folder.path(), std::nullopt, false).ok());
+    EXPECT_EQ(json::parse(folder.read("tileset.json"))["root"]["transform"], placed) << "a later merge leaves it there";
     for (const auto delivery : {tiles::Delivery::Blender, tiles::Delivery::Usd, tiles::Delivery::Heights}) {
         const Status done = tiles::deliver(folder.path(), delivery, nullptr);
         ASSERT_TRUE(done.ok()) << done.error().message;

@@ -5,6 +5,7 @@
 #include "grammar/operations/operations.h"
 #include "grammar/pipeline/files.h"
 #include "grammar/syntax/parser.h"
+#include "modeler/core/atomic_file.h"
 #include "modeler/core/stopwatch.h"
 
 namespace sgm::document {
@@ -172,7 +173,7 @@ void Document::redo() {
 }
 
 Status Document::write(const fs::path& path) {
-    if (const Status written = pipeline::writeText(path, text_); !written.ok()) return written;
+    if (const Status written = writeFile(path, text_); !written.ok()) return written;
     saved_ = text_;
     stamp_ = stampOf(path);
     return Done{};

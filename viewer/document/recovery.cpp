@@ -11,8 +11,8 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "grammar/pipeline/files.h"
 #include "modeler/core/atomic_file.h"
+#include "modeler/core/guarded.h"
 #include "modeler/core/regular_file.h"
 
 namespace sgm::document {
@@ -146,7 +146,7 @@ void Recovery::run() {
         const Work work = *std::exchange(next_, std::nullopt);
         busy_ = true;
         lock.unlock();
-        Status done = write(work);
+        Status done = guarded([&] { return write(work); });
         lock.lock();
         last_ = std::move(done);
         busy_ = false;
@@ -171,7 +171,7 @@ Status Recovery::write(const Work& work) {
             if (lock_ < 0 && errno != EEXIST) return writeError(lockOf(file_), errno);
         }
     }
-    return pipeline::writeText(file_, fmt::format("{}{}\n{}{}", magic, work.document.size(), work.document, work.text));
+    return writeFile(file_, fmt::format("{}{}\n{}{}", magic, work.document.size(), work.document, work.text));
 }
 
 }  // namespace sgm::document
