@@ -51,6 +51,9 @@ struct AttributeContext {
 
     rules::Value evaluate(const rules::Expr& expr) const { return derive::evaluate(expr, place); }
     double number(const rules::Expr& expr) const { return derive::number(expr, place); }
+    double numberWithin(const rules::Expr& expr, double lo, double hi, std::string_view name) const {
+        return derive::numberWithin(expr, place, lo, hi, name);
+    }
     Vector vector(const rules::Expr& expr, bool eachDraws) const { return derive::vector(expr, place, eachDraws); }
     /// Three lengths in metres; shares are of the scope's size.
     Vec3d metres(const Vector& v) const;

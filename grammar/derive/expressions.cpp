@@ -364,27 +364,4 @@ Mat3 rotation(const Value& v) {
     return Mat3::rotation({0, 0, 1}, v.n[2]) * Mat3::rotation({0, 1, 0}, v.n[1]) * Mat3::rotation({1, 0, 0}, v.n[0]);
 }
 
-std::vector<field::Argument> argumentNumbers(const SolidValue& solid) {
-    std::vector<field::Argument> arguments;
-    for (size_t i = 0; i < solid.args.size(); ++i) {
-        const field::PrimitiveParameter& parameter = solid.primitive->parameters[i];
-        const Value& value = solid.args[i];
-        field::Argument& argument = arguments.emplace_back();
-        for (size_t k = 0; k < 2; ++k)  // points have two numbers, all others are told by their first
-            argument.value[k] = std::clamp(value.n[std::min<size_t>(k, value.count - 1u)], parameter.lo, parameter.hi);
-    }
-    return arguments;
-}
-
-SolidValue evaluateSolid(const rules::Solid& solid, const Place& place) {
-    SolidValue v;
-    v.kind = solid.kind;
-    v.primitive = solid.primitive;
-    v.op = solid.op;
-    for (const rules::Expr& arg : solid.args) v.args.push_back(evaluate(arg, place));
-    for (const rules::Solid& part : solid.parts) v.parts.push_back(evaluateSolid(part, place));
-    if (solid.kind == rules::Solid::Kind::Morph) v.amount = std::clamp(number(solid.amount, place), 0.0, 1.0);
-    return v;
-}
-
 }  // namespace sgm::derive

@@ -61,6 +61,10 @@ struct Vector {
 /// One number counts for every axis; with `eachDraws`, a range of numbers draws every component by itself.
 Vector vector(const rules::Expr& expr, const Place& place, bool eachDraws);
 
+/// The first component, or the nearest of both ends where it lies beyond them: the derivation then warns of `name`
+/// ("'blend'") at the expression.
+double numberWithin(const rules::Expr& expr, const Place& place, double lo, double hi, std::string_view name);
+
 /// The rotation that an angle (about y), three angles (x, then y, then z) or a rotation means.
 Mat3 rotation(const rules::Value& value);
 

@@ -55,14 +55,15 @@ std::shared_ptr<Parts> checkCopies(OperationChecker& checker, const syntax::Attr
     return out;
 }
 
-/// `grammar 1` takes a radius below 0, for copies that look inward.
+/// `grammar 1` takes a radius below 0, for copies that look inward, and a gap below 0.
 bool refusesBelowZero(const rules::Grammar& grammar, syntax::SourceSpan span) {
     return rules::versionOf(grammar, span) >= 2;
 }
-std::string belowZero(double radius_m) {
-    return fmt::format("'radius' is {:.6g}m, but must be no less than 0", radius_m);
+std::string belowZero(const char* name, double length_m) {
+    return fmt::format("'{}' is {:.6g}m, but must be no less than 0", name, length_m);
 }
 constexpr const char* turnBodies = "copies that look inward say 'turn 180deg' in their body";
+constexpr const char* sizeBodies = "parts that overlap say 'size' in their body";
 
 std::shared_ptr<Parts> checkAround(OperationChecker& checker, const syntax::Attribute& written) {
     auto out = checkCopies(checker, written, true);
@@ -70,15 +71,18 @@ std::shared_ptr<Parts> checkAround(OperationChecker& checker, const syntax::Attr
     out->args.push_back(checker.expression(written.args[1], Want::Length, "'radius'"));
     if (const auto value = checker.atDefaults(out->args.back());
         value && value->num() < 0 && refusesBelowZero(checker.grammar(), written.span))
-        checker.error(written.args[1].span, belowZero(value->num()), turnBodies);
+        checker.error(written.args[1].span, belowZero("radius", value->num()), turnBodies);
     return out;
 }
 
 std::shared_ptr<Parts> checkRow(OperationChecker& checker, const syntax::Attribute& written) {
     auto out = checkCopies(checker, written, true);
     if (written.args.size() > 1) out->axis = axisOf(written.args[1]);
-    if (written.args.size() > 2)
-        out->args.push_back(checker.measure(written.args[2], Want::Extent, "'gap'", out->axis));
+    if (written.args.size() <= 2) return out;
+    out->args.push_back(checker.measure(written.args[2], Want::Extent, "'gap'", out->axis));
+    if (const auto value = checker.atDefaults(out->args.back());
+        value && value->num() < 0 && refusesBelowZero(checker.grammar(), written.span))
+        checker.error(written.args[2].span, belowZero("gap", value->num()), sizeBodies);
     return out;
 }
 
@@ -104,7 +108,7 @@ bool runAround(PartsContext& context, const Parts& copies) {
     const double count = countOf(context, copies),
                  radius_m = context.evaluate(copies.args[1], hashText("radius")).num();
     if (radius_m < 0 && refusesBelowZero(context.grammar(), copies.span))
-        return context.fail(belowZero(radius_m) + ": " + turnBodies, copies.args[1].span);
+        return context.fail(belowZero("radius", radius_m) + ": " + turnBodies, copies.args[1].span);
     for (double i = 1; i <= count; ++i) {
         context.count(copies.parts[0].local, i);
         Scope scope = context.scope();
@@ -123,6 +127,8 @@ bool runRow(PartsContext& context, const Parts& copies) {
         const rules::Value gap = context.evaluate(copies.args[1], hashText("gap"));
         gap_m = gap.num() * (gap.units[0] == rules::Unit::Share ? whole_m : 1);
     }
+    if (gap_m < 0 && refusesBelowZero(context.grammar(), copies.span))
+        return context.fail(belowZero("gap", gap_m) + ": " + sizeBodies, copies.args[1].span);
     const double part_m = (whole_m - gap_m * (count - 1)) / count;
     if (count >= 1 && !(part_m > 1e-6))
         return context.fail(

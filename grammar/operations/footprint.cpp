@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "grammar/derive/builder.h"
 #include "grammar/operations/operations.h"
@@ -15,12 +16,81 @@ namespace {
 
 using derive::AttributeContext;
 using rules::Attribute;
+using rules::Element;
 using rules::OperationChecker;
 using syntax::ArgumentType;
 using syntax::Operation;
 using syntax::OperationArgument;
 
 constexpr double mostSide_m = 1e5;
+
+/// Whether a solid, or a part of it, stands over the plan of its scope.
+bool standsOverPlan(const rules::Solid& solid) {
+    if (solid.kind == rules::Solid::Kind::Primitive) return solid.primitive->plan != field::PlanUse::None;
+    return solid.kind == rules::Solid::Kind::Nil || std::ranges::any_of(solid.parts, standsOverPlan);
+}
+
+bool isOfPlan(const Attribute& attribute) {
+    constexpr std::array all{&footprint, &offset, &setback, &court, &rectify};
+    return std::ranges::find(all, attribute.operation) != all.end();
+}
+
+/// Whether an attribute makes a box of the scope, whose plan a solid may leave aside.
+bool makesBox(const Attribute& attribute) {
+    return attribute.operation == &inner ||
+           (attribute.plan && attribute.plan->row && attribute.plan->row->name == "rect");
+}
+
+/// The attributes of an element that the attribute is one of: those before its shape, or behind it.
+const std::vector<Attribute>& listOf(const Element& element, const Attribute& attribute) {
+    const bool isBefore = std::ranges::any_of(element.prefix, [&](const Attribute& a) { return &a == &attribute; });
+    return isBefore ? element.prefix : element.attributes;
+}
+
+/// Warns of a plan that the element's solid takes no notice of; once for all that is said of the plan.
+void agreePlan(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    const rules::SymbolId symbol = element.content.symbol();
+    const bool isTerminal = symbol != rules::none && checker.grammar().symbols[symbol].terminal;
+    const rules::Solid* solid = element.content.solid();
+    if (isTerminal && checker.grammar().symbols[symbol].solid) solid = &*checker.grammar().symbols[symbol].solid;
+    const std::vector<Attribute>& list = listOf(element, attribute);
+    const bool isBox = std::ranges::any_of(list, makesBox) || std::ranges::any_of(element.attributes, makesBox);
+    if (!solid || standsOverPlan(*solid) || isBox || &*std::ranges::find_if(list, isOfPlan) != &attribute) return;
+    checker.warning(
+        attribute.span,
+        fmt::format("'{}' fills its scope, whatever plan it has: this does nothing but set its size", element.label),
+        "write 'block' for what stands over the plan, or a terminal without a solid");
+}
+
+/// Whether a size sets metres along an axis, as far as the defaults of parameters tell.
+bool setsMetres(const OperationChecker& checker, const rules::Expr& written, size_t axis) {
+    const bool isTuple = written.kind == rules::Expr::Kind::Tuple && written.args.size() == 3;
+    const auto value = checker.atDefaults(isTuple ? written.args[axis] : written);
+    return value && value->units[value->count == 3 ? axis : 0] == rules::Unit::Metre;
+}
+
+/// Warns of a size behind the attribute that sets metres along one of the axes anew.
+void agreeSize(OperationChecker& checker, const Element& element, const Attribute& attribute,
+               std::initializer_list<size_t> axes) {
+    bool isBehind = false;
+    for (const Attribute& a : listOf(element, attribute)) {
+        if (isBehind && a.operation == &size && !a.args.empty() &&
+            std::ranges::any_of(axes, [&](size_t axis) { return setsMetres(checker, a.args[0], axis); })) {
+            checker.warning(a.span, fmt::format("this size undoes '{}' before it", attribute.operation->name),
+                            fmt::format("write 'size' before '{}'", attribute.operation->name));
+            return;
+        }
+        isBehind |= &a == &attribute;
+    }
+}
+
+void agreeExtrude(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    agreeSize(checker, element, attribute, {1});
+}
+void agreeOffset(OperationChecker& checker, const Element& element, const Attribute& attribute) {
+    agreePlan(checker, element, attribute);
+    agreeSize(checker, element, attribute, {0, 2});
+}
 
 constexpr OperationArgument footprintArguments[] = {
     {"plan", ArgumentType::Plan,
@@ -165,6 +235,7 @@ constinit const Operation footprint{
     .arguments = footprintArguments,
     .traits = {.beforeShape = true},
     .check = checkFootprint,
+    .agree = agreePlan,
     .apply = applyFootprint,
 };
 
@@ -175,6 +246,7 @@ constinit const Operation extrude{
     .arguments = extrudeArguments,
     .range = {1e-6, mostSide_m, "more than 0, and at most 100 km"},
     .traits = {.beforeShape = true},
+    .agree = agreeExtrude,
     .apply = applyExtrude,
 };
 
@@ -185,6 +257,7 @@ constinit const Operation offset{
     .arguments = offsetArguments,
     .range = {-mostSide_m, mostSide_m, "at most 100 km"},
     .traits = {.beforeShape = true},
+    .agree = agreeOffset,
     .apply = applyOffset,
 };
 
@@ -197,6 +270,7 @@ constinit const Operation setback{
     .arguments = setbackArguments,
     .traits = {.beforeShape = true},
     .check = checkSetback,
+    .agree = agreePlan,
     .apply = applySetback,
 };
 
@@ -209,6 +283,7 @@ constinit const Operation court{
     .arguments = courtArguments,
     .range = {1e-3, mostSide_m, "at least 1 mm"},
     .traits = {.beforeShape = true},
+    .agree = agreePlan,
     .apply = applyCourt,
 };
 
@@ -218,6 +293,7 @@ constinit const Operation rectify{
     .example = "footprint outline((0, 0), (9, .2), (9.1, 6), (0, 6)) rectify 5deg block",
     .arguments = rectifyArguments,
     .traits = {.beforeShape = true},
+    .agree = agreePlan,
     .apply = applyRectify,
 };
 

@@ -39,7 +39,8 @@ constexpr OperationRange share{0, 1, "0 … 1"};
 Vec3f colorOf(const Value& value) { return Vec3d{value.n[0], value.n[1], value.n[2]}.as<float>(); }
 
 float shareOf(AttributeContext& context, const Attribute& attribute) {
-    return static_cast<float>(std::clamp(context.number(attribute.args[0]), 0.0, 1.0));
+    return static_cast<float>(
+        context.numberWithin(attribute.args[0], 0, 1, fmt::format("'{}'", attribute.operation->name)));
 }
 
 void applyColor(AttributeContext& context, const Attribute& attribute) {

@@ -71,14 +71,14 @@ std::shared_ptr<Parts> checkPlace(OperationChecker& checker, const syntax::Attri
     return out;
 }
 
-/// Only what merely joins the model may hold an object: elsewhere it would have to be cut or melted.
+/// Only what merely joins the model may hold an object: elsewhere it would have to be cut or blended.
 bool standsFree(PartsContext& context, const Parts& parts) {
     const derive::ShapeTree& tree = context.derivation().tree;
     for (derive::ShapeId s = context.shape(); s != derive::none; s = tree.shapes[s].parent) {
         const derive::Shape& shape = tree.shapes[s];
         if ((shape.op == Operator::None || shape.op == Operator::Sum) && shape.blend_m <= 0) continue;
         return context.fail(
-            fmt::format("an object of its own can't be cut with, shared, morphed or melted, as '{}' is", tree.path(s)),
+            fmt::format("an object of its own can't be cut with, shared, morphed or blended, as '{}' is", tree.path(s)),
             parts.span);
     }
     return true;

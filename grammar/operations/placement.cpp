@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "grammar/derive/attribute_context.h"
 #include "grammar/operations/operations.h"
@@ -53,7 +54,7 @@ constexpr OperationArgument byArguments[] = {
 constexpr OperationArgument throughArguments[] = {
     {"shape", ArgumentType::Symbol, "the nearest shape of that name above the matched one"}};
 constexpr OperationArgument blendArguments[] = {
-    {"radius", ArgumentType::Length, "metres within which both surfaces melt; 0 is a sharp edge"}};
+    {"radius", ArgumentType::Length, "metres over which the two surfaces blend; 0 keeps the edge sharp"}};
 
 bool isCalled(const Written& e, std::string_view word) {
     return (e.kind == Written::Kind::Name || e.kind == Written::Kind::Call) && e.text == word;
@@ -270,11 +271,12 @@ void applyShift(AttributeContext& context, const Attribute& attribute) {
 }
 
 void applyBy(AttributeContext& context, const Attribute& attribute) {
-    context.out.amount = std::clamp(context.number(attribute.args[0]), 0.0, 1.0);
+    context.out.amount = context.numberWithin(attribute.args[0], 0, 1, "'by'");
 }
 
 void applyBlend(AttributeContext& context, const Attribute& attribute) {
-    context.out.blend_m = std::max(0.0, context.number(attribute.args[0]));
+    context.out.blend_m =
+        context.numberWithin(attribute.args[0], 0, std::numeric_limits<double>::infinity(), "'blend'");
 }
 
 }  // namespace

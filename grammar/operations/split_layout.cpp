@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grammar/rules/value.h"
 #include "modeler/core/random.h"
 
 namespace sgm::operations {
@@ -60,6 +61,10 @@ private:
     Length lengthOf(const Part& part, const Turns& turns, uint64_t key) {
         for (const auto& [local, turn] : turns) context_.count(local, turn);
         const rules::Value v = context_.evaluate(part.size, key);
+        if (v.num() < -1e-9)
+            context_.warn(part.size.span,
+                          fmt::format("the size of a part is {} here, so the part is left out", rules::toText(v)),
+                          "write 'max(0, …)' where that is meant");
         const double size = std::max(0.0, v.num());
         if (part.floating) return {0, size};
         return {v.units[0] == rules::Unit::Share ? size * whole_ : size, 0};

@@ -75,7 +75,7 @@ void applyDisplace(AttributeContext& context, const Attribute& attribute) {
     noise.fbm = attribute.args[fbmAt].value.truth();
     noise.amplitude_m = context.number(attribute.args[amplitudeAt]);
     noise.frequency = context.number(attribute.args[frequencyAt]);
-    noise.octaves = static_cast<int>(std::clamp(context.number(attribute.args[octavesAt]), 1.0, 8.0));
+    noise.octaves = static_cast<int>(context.numberWithin(attribute.args[octavesAt], 1, 8, "the number of octaves"));
     constexpr double finest_per_m = 1e5, highest_m = 1e6;
     if (!(std::abs(noise.amplitude_m) <= highest_m && std::abs(noise.frequency) <= finest_per_m))
         context.fail(

@@ -100,6 +100,23 @@ std::optional<ArithmeticWarning> findUnlikeNumbers(const Expr& expr, std::span<c
     return {};
 }
 
+std::optional<std::string> findOutOfRange(const field::Primitive& row, size_t parameter, const Value& value) {
+    const field::PrimitiveParameter& p = row.parameters[parameter];
+    const bool isFree = p.kind == field::ParameterKind::Rotation || p.kind == field::ParameterKind::File;
+    if (isFree || value.kind == Value::Kind::Word || value.kind == Value::Kind::Text) return {};
+    for (size_t i = 0; i < value.count; ++i) {
+        if (value.n[i] >= p.lo && value.n[i] <= p.hi) continue;
+        const auto bound = [&](double n) {
+            Value b = Value::number(n, value.units[std::min(i, value.units.size() - 1)]);
+            b.integer = p.kind == field::ParameterKind::Count;
+            return toText(b);
+        };
+        return fmt::format("'{}' of '{}' is {}, but must be {} … {}", p.name, row.name, toText(value), bound(p.lo),
+                           bound(p.hi));
+    }
+    return {};
+}
+
 std::optional<ArithmeticWarning> findDoubtWithin(const Expr& e, std::span<const Value> params) {
     const bool calls = e.kind == Expr::Kind::Unary || e.kind == Expr::Kind::Binary || e.kind == Expr::Kind::Call;
     if (calls && static_cast<Fn>(e.index) == Fn::If) {

@@ -29,6 +29,9 @@ ArithmeticWarning unlikeNumbers(const Type& a, const Type& b, std::string_view v
 /// `args` are the values of its arguments.
 std::optional<ArithmeticWarning> findUnlikeNumbers(const Expr& expr, std::span<const Value> args);
 
+/// Why a primitive can't take a value for a parameter, by its index; nothing where it can.
+std::optional<std::string> findOutOfRange(const field::Primitive& row, size_t parameter, const Value& value);
+
 /// The first doubtful call within `e` where the parameters have these values; what they don't decide is left out, and
 /// so is the branch of an `if` that isn't taken.
 std::optional<ArithmeticWarning> findDoubtWithin(const Expr& e, std::span<const Value> params);

@@ -138,6 +138,8 @@ void checkShape(CheckContext& ctx, Place& place, const syntax::Element& written,
     if (out.op == Operator::Morph) place.morphs = true;
     if (!out.label.empty()) out.ordinal = place.ordinals[out.label]++;
     OperationChecker checker(ctx, place, out, out.attributes);
+    for (const Attribute& a : out.prefix)
+        if (a.operation->agree && a.operation->phase == Operation::Phase::Scope) a.operation->agree(checker, out, a);
     for (const Attribute& a : out.attributes)
         if (a.operation->agree) a.operation->agree(checker, out, a);
 }

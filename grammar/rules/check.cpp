@@ -123,6 +123,8 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     warnOfUnused(ctx, files.asts.back());
     findUnreachable(grammar, diagnostics);
     findShadowed(grammar, diagnostics);
+    findUnusedWeights(grammar, diagnostics);
+    findReplacingSteps(grammar, diagnostics);
     findSharesOfNothing(grammar, diagnostics);
     findUnsized(grammar, diagnostics);
     findUnusedHeights(grammar, diagnostics);
@@ -169,7 +171,7 @@ Result<Value> parseValue(const Param& param, const std::string& text) {
         CheckContext ctx(empty, diagnostics);
         value = plainValue(ctx, expr, !param.choices.empty());
     }
-    if (value) return conform(param, std::move(*value));
+    if (value && diagnostics.all().empty()) return conform(param, std::move(*value));
     if (param.value.kind == Value::Kind::Bool)
         return Error{Error::Kind::Input, fmt::format("'{}' is true or false, not '{}'", param.name, text)};
     if (param.value.kind == Value::Kind::Color)

@@ -11,6 +11,7 @@
 #include "grammar/rules/type.h"
 #include "grammar/syntax/parser.h"
 #include "modeler/core/conventions.h"
+#include "modeler/core/decimal.h"
 
 namespace sgm::rules {
 namespace {
@@ -51,8 +52,10 @@ std::string outOfRange(const Param& param, const Value& value) {
 
 nlohmann::ordered_json jsonOf(const Value& v) {
     const auto one = [&](size_t i) -> nlohmann::ordered_json {
-        if (v.integer) return static_cast<int64_t>(shown(v, i));
-        return shown(v, i);
+        constexpr double mostExact = 9007199254740992.0;  // 2⁵³: larger ones needn't be whole
+        const double number = shown(v, i);
+        if (v.integer && std::abs(number) <= mostExact) return static_cast<int64_t>(number);
+        return number;
     };
     switch (v.kind) {
         case Value::Kind::Number:
@@ -155,7 +158,7 @@ double shown(const Value& v, size_t i) {
     const Unit unit = v.units[std::min(i, v.units.size() - 1)];
     // Through text: 0.3 % stays 0.3, 12 degrees stay 12.
     const double raw = unit == Unit::Angle ? degrees(v.n[i]) : unit == Unit::Share ? v.n[i] * 100 : v.n[i];
-    return std::stod(fmt::format("{:.12g}", raw));
+    return decimalOf(fmt::format("{:.12g}", raw));
 }
 
 std::string_view kindName(const Value& v) {

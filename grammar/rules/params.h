@@ -18,7 +18,7 @@ std::string setRange(Param& param, const Value& lo, const Value& hi);
 /// `value` as `param` takes it: a bare number gets the unit, one number counts for every component. Error::Input for a
 /// wrong kind or unit, a value out of range, a fraction where whole numbers are asked for, or none of the choices.
 Result<Value> conform(const Param& param, Value value);
-/// The same, whatever range and choices say.
+/// `value` fitted to the parameter's kind and unit as by conform(); range and choices aren't looked at.
 Result<Value> conformKind(const Param& param, Value value);
 
 /// The style called `name` for the start with this index, else one of that name for any start, or null.

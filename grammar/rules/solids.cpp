@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "grammar/rules/arithmetic_warnings.h"
 #include "grammar/rules/bodies.h"
 #include "grammar/rules/declarations.h"
 #include "grammar/rules/evaluate.h"
@@ -307,6 +308,8 @@ std::string hintForSolid(CheckContext& ctx, std::string_view word) {
         return fmt::format("'{}' is a plan for 'footprint', which a solid stands on: write '{} extrude 3m block'", word,
                            plan->example);
     const std::string file = ctx.files.declaring(std::string(word));
+    if (!file.empty() && isNonTerminal(word))
+        return fmt::format("write 'rule {0} -> …', or 'use \"{1}\"' for the '{0}' that it declares", word, file);
     if (!file.empty()) return fmt::format("it is declared in {0}: write 'use \"{0}\"'", file);
     std::vector<std::string> known = symbolNames(ctx, true);
     for (const field::Primitive& row : field::primitives()) known.emplace_back(row.name);
@@ -318,17 +321,8 @@ std::string hintForSolid(CheckContext& ctx, std::string_view word) {
 
 /// Numbers that are known already and outside the parameter's range.
 void checkParameterRange(CheckContext& ctx, const Expr& expr, const field::Primitive& row, size_t index) {
-    const field::PrimitiveParameter& parameter = row.parameters[index];
-    const auto value = fold(expr, ctx.params.defaults);
-    if (!value || parameter.kind == ParameterKind::Rotation || value->kind == Value::Kind::Word) return;
-    for (size_t i = 0; i < value->count; ++i)
-        if (value->n[i] < parameter.lo || value->n[i] > parameter.hi) {
-            ctx.diagnostics.error(expr.span,
-                                  fmt::format("'{}' of '{}' is {}, but must be {} … {}", parameter.name, row.name,
-                                              toText(*value), toText(plainValue(parameter.kind, parameter.lo)),
-                                              toText(plainValue(parameter.kind, parameter.hi))));
-            break;
-        }
+    if (const auto value = fold(expr, ctx.params.defaults))
+        if (auto why = findOutOfRange(row, index, *value)) ctx.diagnostics.error(expr.span, std::move(*why));
 }
 
 /// Every parameter at its default.

@@ -24,6 +24,12 @@ void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 /// them, shapes between two points as long as these are apart.
 void findUnusedHeights(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 
+/// Warns of weights of rules of the main file that a condition chooses, not chance.
+void findUnusedWeights(const Grammar& grammar, syntax::Diagnostics& diagnostics);
+
+/// Warns of rules of the main file whose `repeat` makes one solid and goes on from it: the next step replaces it.
+void findReplacingSteps(const Grammar& grammar, syntax::Diagnostics& diagnostics);
+
 /// Warns of symbols that wait for each other by `after`: nothing decides which comes first. Once a cycle.
 void findWaitingCycles(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "grammar/syntax/foreign_lengths.h"
+#include "modeler/core/decimal.h"
 
 namespace sgm::syntax {
 
@@ -97,7 +97,7 @@ std::optional<Hint> foreignUnit(const Cursor& cursor, const Token& number, const
                               {"meters", 1},      {"metre", 1},     {"metres", 1}};
     const auto unit = std::ranges::find(units, cursor.text(word), &Unit::name);
     if (unit == std::end(units)) return {};
-    const double length_m = std::strtod(std::string(cursor.text(number)).c_str(), nullptr) * unit->length_m;
+    const double length_m = decimalOf(cursor.text(number)) * unit->length_m;
     return Hint{join(cursor.span(number), cursor.span(word)), quoted(cursor.text(word)) + " is no unit",
                 "write " + quoted(fmt::format("{:.4g}m", length_m))};
 }
@@ -145,7 +145,7 @@ std::optional<Hint> besideNumber(const Cursor& cursor, std::string_view message)
     if (isPlain && token.kind == Token::Kind::Word)
         if (auto foreign = foreignUnit(cursor, number, token)) return foreign;
     if (isPlain && token.kind == Token::Kind::Text && token.glued && text.starts_with('"')) {
-        const double length_m = std::strtod(written.c_str(), nullptr) * inch_m;
+        const double length_m = decimalOf(written) * inch_m;
         SourceSpan mark = cursor.span(token);
         mark.end = mark.begin + 1;
         return Hint{join(cursor.span(number), mark), "'\"' is no unit",
@@ -262,12 +262,12 @@ Hint unknownCharacter(const Cursor& cursor) {
     for (const Lookalike& row : lookalikes)
         if (bytes.substr(0, row.bytes.size()) == row.bytes) hint.hint = std::string(row.hint);
     if (bytes == "'" && cursor.at(Token::Kind::Number, 1) && cursor.peek(1).glued) {
-        const double share = std::strtod(std::string(cursor.peekText(1)).c_str(), nullptr);
+        const double share = decimalOf(cursor.peekText(1));
         hint.hint = "a share is written in percent: write " + quoted(fmt::format("{:.6g}%", share * 100));
     }
     const Token last = cursor.previous(1);
     if (bytes == "'" && last.kind == Token::Kind::Number && cursor.peek().glued) {
-        const double feet = std::strtod(std::string(cursor.text(last)).c_str(), nullptr);
+        const double feet = decimalOf(cursor.text(last));
         return {join(cursor.span(last), cursor.span(cursor.peek())),
                 quoted(std::string(cursor.text(last)) + "'") + " is no length",
                 "write " + quoted(fmt::format("{:.4g}m", feet * foot_m))};

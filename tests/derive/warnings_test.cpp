@@ -41,6 +41,42 @@ TEST(Warnings, DivisionByZeroNamesTheDivisor) {
         << "once a place";
 }
 
+TEST(Warnings, ValuesBeyondTheirRangeAreTold) {
+    const auto at = [](double t, const std::string& body) {
+        derive::Options options;
+        options.params = {rules::Value::number(t)};
+        return warningsOf(derived("grammar 2\nparam t = .5 in -9..9\nstart A -> cube size 4 : B\n" + body, options));
+    };
+    for (const auto& [body, told] :
+         {std::pair("rule B -> torus(t)\n", "4:17 'tube' of 'torus' is -5, but must be 0.02 … 0.5\n"),
+          {"rule B -> morph(cube, sphere, t)\n", "4:31 the morph's share is -5, but must be 0 … 1\n"},
+          {"rule B -> morph sphere by t\n", "4:27 'by' is -5, but must be 0 … 1\n"},
+          {"rule B -> + sphere size 1 at +y blend (t * 1m)\n", "4:39 'blend' is -5m, but must be no less than 0m\n"},
+          {"rule B -> cube rough t\n", "4:22 'rough' is -5, but must be 0 … 1\n"},
+          {"rule B -> sphere displace fbm(.1m, 2/m, 1 + floor(t))\n",
+           "4:41 the number of octaves is -4, but must be 1 … 8\n"}}) {
+        EXPECT_EQ(at(-5, body), told);
+        EXPECT_EQ(at(body[10] == 's' ? 2 : .5, body), "") << body;
+    }
+}
+
+TEST(Warnings, PartsOfNegativeSizeAreTold) {
+    EXPECT_EQ(told("start A -> size (6, 2, 2) split x { 2m: cube | scope.x - 9m: sphere | ~1: cube }\n"),
+              "2:48 the size of a part is -3m here, so the part is left out\n");
+    EXPECT_EQ(told("start A -> size (9, 2, 2) split x { 2m: cube | scope.x - 9m: sphere | ~1: cube }\n"), "");
+}
+
+TEST(Warnings, GapsOfARowAreNoLessThanNothing) {
+    const std::string row = "param g = 1m in -3m..3m\nstart A -> size (10, 2, 2) row 4 along x gap g { cube }\n";
+    derive::Options options;
+    options.params = {rules::Value::number(-1, rules::Unit::Metre)};
+    const auto refused = tryDerive("grammar 2\n" + row, options);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_NE(refused.error().message.find("'gap' is -1m, but must be no less than 0"), std::string::npos)
+        << refused.error().message;
+    EXPECT_TRUE(tryDerive("grammar 1\n" + row, options).ok());
+}
+
 TEST(Warnings, RootsRepeatsAndColours) {
     EXPECT_EQ(told("param n = -4 in -4..4\nstart A -> cube move (sqrt(n), 0, 0)\n"),
               "3:23 square root of a negative number: -4\n");

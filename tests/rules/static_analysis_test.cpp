@@ -47,6 +47,45 @@ TEST(Siblings, WithoutAShapeAreTold) {
     EXPECT_EQ(judged("rule A -> nil, size 1m row 3 along x { cube }\n"), "");
 }
 
+TEST(Plans, ThatASolidTakesNoNoticeOfAreTold) {
+    const std::string told = "fills its scope, whatever plan it has: this does nothing but set its size\n";
+    const std::string ofCube = "warning: 'cube' " + told;
+    EXPECT_EQ(judged("rule A -> footprint ell(16, 12, 5, 6) extrude 3m cube\n"), ofCube);
+    EXPECT_EQ(judged("rule A -> cube size 4m footprint ngon(6) offset .1m\n"), ofCube) << "once a shape";
+    EXPECT_EQ(judged("rule A -> size 20m court 4m (cube)\n"), "") << "what is in the group may stand over it";
+    EXPECT_EQ(judged("rule A -> size 20m court 4m cube of clay\nmaterial clay color #884422\n"), ofCube);
+    EXPECT_EQ(judged("terminal w = sphere\nrule A -> footprint ngon(6) extrude 3m w\n"), "warning: 'w' " + told);
+    EXPECT_EQ(judged("rule A -> footprint ell(16, 12, 5, 6) extrude 3m block\n"), "");
+    EXPECT_EQ(judged("rule A -> footprint ell(16, 12, 5, 6) hipRoof\n"), "");
+    EXPECT_EQ(judged("terminal w color #ffffff\nrule A -> footprint ngon(6) extrude 3m w\n"), "");
+    EXPECT_EQ(judged("rule A -> footprint rect(4, 3) extrude 3m cube\n"), "") << "it is that box";
+    EXPECT_EQ(judged("rule A -> footprint ell(16, 12, 5, 6) inner cube\n"), "");
+}
+
+TEST(Sizes, ThatUndoWhatStandsBeforeThemAreTold) {
+    EXPECT_EQ(judged("rule A -> footprint rect(10, 10) extrude 3m size (4, 4, 4) block\n"),
+              "warning: this size undoes 'extrude' before it\n");
+    EXPECT_EQ(judged("rule A -> offset 1m size (4m, 100%, 4m) block\n"),
+              "warning: this size undoes 'offset' before it\n");
+    EXPECT_EQ(judged("rule A -> extrude 3m size (50%, 100%, 50%) block\n"), "");
+    EXPECT_EQ(judged("rule A -> size (4, 4, 4) extrude 3m block\n"), "");
+    EXPECT_EQ(judged("rule A -> extrude 3m cube size (1, 1, 1)\n"), "") << "that of what stands in the scope";
+}
+
+TEST(Weights, OfRulesThatConditionsChooseAreTold) {
+    EXPECT_EQ(judged("rule A weight 3 when scope.x > 1m -> cube\nrule A -> sphere\n"),
+              "warning: this weight does nothing: of rules with 'when' the first one that holds wins\n");
+    EXPECT_EQ(judged("rule A weight 3 -> cube\nrule A weight 1 -> sphere\n"), "");
+}
+
+TEST(Repeats, WhoseStepsReplaceOneAnotherAreTold) {
+    EXPECT_EQ(judged("rule A repeat 3 -> cube size (i, 1, 1) : A\n"),
+              "warning: each step replaces what the one before made, so that the last 'cube' alone is left\n");
+    EXPECT_EQ(judged("rule A repeat 3 -> + cube at +x : A\n"), "");
+    EXPECT_EQ(judged("rule A repeat 3 -> cube + sphere at +y : A\n"), "");
+    EXPECT_EQ(judged("rule A repeat 3 -> split x { ~1: cube : A | ~1: cube }\n"), "");
+}
+
 TEST(WaitingCycles, AreToldOnce) {
     EXPECT_EQ(judged("rule A -> cube : B, cube : C\nrule B after C -> cube\nrule C after B -> cube\n"),
               "warning: 'B' waits for 'C', and 'C' waits for 'B': nothing decides which comes first\n");
