@@ -1,7 +1,7 @@
 // What `compile` knows of a graph's nodes on the way, kept for when their numbers change.
 // Enters: a graph, a node, numbers. Leaves: a tape. Assumes the graph outlives it, with the same nodes. Nothing
 // recurses: node ids are in topological order (operands first), so passes are loops over ids. The entry points are
-// tape.h, for a tape once, and recompiler.h, for one that follows its numbers.
+// tape.h, for a tape once, and incremental_compiler.h, for one that follows its numbers.
 #pragma once
 
 #include <bit>

@@ -3,6 +3,7 @@
 // the format and the formula of every solid.
 #include <nlohmann/json.hpp>
 
+#include "modeler/core/decimal.h"
 #include "modeler/export/formats.h"
 #include "modeler/export/out_file.h"
 #include "modeler/field/solid_tree.h"
@@ -17,7 +18,7 @@ std::string textOf(const Json& json) { return json.dump(-1, ' ', false, Json::er
 Json listOf(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
 /// A number as it was meant: .8f as .8.
-double decimal(float v) { return std::stod(textOf(Json(v))); }
+double decimal(float v) { return decimalOf(textOf(Json(v))); }
 
 Json materialOf(const Material& m) {
     return {{"name", m.name},

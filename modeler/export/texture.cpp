@@ -1,7 +1,9 @@
 #include "modeler/export/texture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <vector>
 
 #include "modeler/core/random.h"
 #include "modeler/export/surface.h"
@@ -13,11 +15,34 @@ namespace {
 
 /// A share of the area of a smooth piece by which its triangles' normals may lean away from their mean: rounding.
 constexpr double flatness = 1e-3;
+/// Cosine of the angle within which two triangles lie in one plane.
+constexpr double inPlane = .99996;
 /// The triangles of one origin and label: the face of a box, the side of a roof, or something curved.
 struct SmoothPiece {
     Vec3d normal;  ///< twice the area, then the unit normal of a flat one
-    double bent = 0;
+    double bent = 0, area = 0;
     bool flat = false;
+    std::vector<Vec3d>
+        planes{};       ///< of one that isn't flat: the sums of those of its triangles that lie in a plane each
+    double beyond = 0;  ///< twice the area of triangles in other planes
+
+    /// Counts a triangle to its plane. `c` has twice its area as length.
+    void addToPlane(Vec3d c) {
+        constexpr size_t most = 16;
+        if (Vec3d* plane = planeOf(c))
+            *plane += c;
+        else if (planes.size() < most)
+            planes.push_back(c);
+        else
+            beyond += length(c);
+    }
+    Vec3d* planeOf(Vec3d c) {
+        const auto at = std::find_if(planes.begin(), planes.end(),
+                                     [&](Vec3d p) { return dot(c, p) >= inPlane * length(c) * length(p); });
+        return at == planes.end() ? nullptr : &*at;
+    }
+    /// Nearly all of it lies in a few planes: coarse cells let faces run over their edges to the next ones.
+    bool isFaceted() const { return beyond < area / 5; }
 };
 
 /// Distinct axes, by their numbers in steps that no eye sees.
@@ -53,7 +78,7 @@ public:
 
     TextureCharts run() {
         forTriangles([&](OriginId, Vec3d, Vec3d c, SmoothPiece* piece) {
-            if (piece) piece->normal += c;
+            if (piece) piece->normal += c, piece->area += length(c);
         });
         std::unordered_map<uint64_t, double> areas;
         for (auto& [key, piece] : pieces_) areas[key] = length(piece.normal), piece.normal = normalized(piece.normal);
@@ -63,6 +88,9 @@ public:
                     length(c - piece->normal * dot(c, piece->normal)) + std::max(0.0, -dot(c, piece->normal));
         });
         for (auto& [key, piece] : pieces_) piece.flat = piece.bent <= flatness * areas[key];
+        forTriangles([&](OriginId origin, Vec3d, Vec3d c, SmoothPiece* piece) {
+            if (piece && !piece->flat && partOf(origin).hasFlatFaces) piece->addToPlane(c);
+        });
         charts_.ofTriangle.reserve(mesh_.triangleCount());
         forTriangles([&](OriginId origin, Vec3d at, Vec3d c, SmoothPiece* piece) {
             charts_.ofTriangle.push_back(chartOf(origin, at, c, piece));
@@ -92,13 +120,22 @@ private:
         }
     }
 
-    uint32_t chartOf(OriginId origin, Vec3d point, Vec3d c, const SmoothPiece* piece) {
-        const Part& part = provenance_.parts[origin < provenance_.parts.size() ? origin : 0];
-        const bool flat = piece && piece->flat;
-        return table_.index(
-            image::mapFace(part.textureFrame.get(), part.pose.axes, provenance_.materials[part.material].texture.get(),
-                           flat, flat ? piece->normal : c, point),
-            charts_.axes);
+    const Part& partOf(OriginId origin) const {
+        return provenance_.parts[origin < provenance_.parts.size() ? origin : 0];
+    }
+
+    uint32_t chartOf(OriginId origin, Vec3d point, Vec3d c, SmoothPiece* piece) {
+        const Part& part = partOf(origin);
+        const bool isFaceted = piece && !piece->flat && part.hasFlatFaces && piece->isFaceted();
+        const bool flat = piece && (piece->flat || isFaceted);
+        Vec3d normal = flat ? piece->normal : c;
+        if (isFaceted) {
+            const Vec3d* plane = piece->planeOf(c);
+            normal = normalized(plane ? *plane : c);
+        }
+        return table_.index(image::mapFace(part.textureFrame.get(), part.pose.axes,
+                                           provenance_.materials[part.material].texture.get(), flat, normal, point),
+                            charts_.axes);
     }
 
     const mesh::Mesh& mesh_;

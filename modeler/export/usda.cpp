@@ -22,6 +22,13 @@ namespace {
 /// A text in quotes; JSON's escapes are also USD's, since nothing but control characters needs them.
 std::string quoted(const std::string& text) { return nlohmann::json(validUtf8(oneLine(text))).dump(); }
 
+/// A path as USD writes an asset: between three @ where it holds one itself.
+std::string assetPath(std::string path) {
+    if (path.find('@') == std::string::npos) return "@" + path + "@";
+    for (size_t at = 0; (at = path.find("@@@", at)) != std::string::npos; at += 4) path.insert(at, "\\");
+    return "@@@" + path + "@@@";
+}
+
 /// What a prim knows of its shape.
 std::string customData(const ObjectNode& object) {
     std::string text = fmt::format("    customData = {{\n        string path = {}\n        string symbol = {}\n",
@@ -163,11 +170,11 @@ std::string textureShaders(const image::Texture& texture, const std::string& pri
         text += fmt::format(
             "\n            def Shader \"{}\"\n            {{\n"
             "                uniform token info:id = \"UsdUVTexture\"\n"
-            "                asset inputs:file = @{}@\n"
+            "                asset inputs:file = {}\n"
             "                float2 inputs:st.connect = <{}/Tiles.outputs:result>\n"
             "                token inputs:wrapS = \"repeat\"\n                token inputs:wrapT = \"repeat\"\n"
             "                token inputs:sourceColorSpace = \"{}\"\n{}            }}\n",
-            name, pathFrom(folder, file->path), prim, space, more);
+            name, assetPath(pathFrom(folder, file->path)), prim, space, more);
     };
     picture("Color", texture.color, "sRGB", "                float3 outputs:rgb\n");
     picture("Roughness", texture.roughness, "raw", "                float outputs:g\n");

@@ -139,9 +139,9 @@ Field displace(Field f, Point p, Noise noise, NodeRef amplitude, double amplitud
     const float steepness = ops::Noise::lipschitz(count);
     const NodeRef height = p.x.graph().apply(codeOf<ops::Noise>, {p.x * frequency, p.y * frequency, p.z * frequency},
                                              ops::Noise::pack(noise == Noise::Fbm, count, seed));
-    const NodeRef divisor = 1.0f + amplitude * frequency * steepness;
-    const auto slope = static_cast<float>(amplitudeValue * frequencyValue) * steepness;
-    return {(f.value - amplitude * height) / divisor, levelBox(f.bounds, amplitudeValue, f.growth),
+    const NodeRef divisor = 1.0f + abs(amplitude * frequency) * steepness;
+    const auto slope = static_cast<float>(std::abs(amplitudeValue * frequencyValue)) * steepness;
+    return {(f.value - amplitude * height) / divisor, levelBox(f.bounds, std::abs(amplitudeValue), f.growth),
             (f.lipschitz + slope) / (1 + slope), f.growth / (1 + slope) * (1 - 1e-6f)};
 }
 

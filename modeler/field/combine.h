@@ -39,9 +39,9 @@ Field intersection(Owned a, Owned b);
 Field blend(Graph& graph, std::span<const Owned> parts, NodeRef radius, double radiusValue);
 /// SG-M eq. 14: a·(1 − t) + b·t of true distances; the surface belongs to `origin`.
 Field morph(Field a, Field b, NodeRef t, double tValue, OriginId origin);
-/// (d − amplitude · noise(p · frequency)) / (1 + amplitude · frequency · L), L the noise's own bound, so that a
-/// distance stays 1-Lipschitz. The noise is never switched off far away (that would leave specks). Billow is in [0, 1]:
-/// rounded lumps on the outside; fbm in [−1, 1].
+/// (d − amplitude · noise(p · frequency)) / (1 + |amplitude · frequency| · L), L the noise's own bound, so that a
+/// distance stays 1-Lipschitz. A negative amplitude turns the noise inside out. The noise is never switched off far
+/// away (that would leave specks). Billow is in [0, 1]: rounded lumps on the outside; fbm in [−1, 1].
 enum class Noise { Billow, Fbm };
 /// `amplitude` in metres, `frequency` in 1/m; octaves 1 … 8 is structure. Papers guide, section 3.
 Field displace(Field f, Point p, Noise noise, NodeRef amplitude, double amplitudeValue, NodeRef frequency,

@@ -28,11 +28,6 @@ public:
         return none;
     }
 
-    /// Fetches what `find` reads first into the cache.
-    void prefetch(uint64_t hash) const {
-        if (!places_.empty()) __builtin_prefetch(&places_[static_cast<uint32_t>(hash) & mask()]);
-    }
-
     /// Makes room for `count` ids in all.
     void reserve(size_t count) {
         if (2 * count > places_.size()) resize(std::bit_ceil(2 * count));

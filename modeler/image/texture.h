@@ -13,6 +13,7 @@ struct Texture {
     ImageFilePtr roughness;  ///< its green is the roughness, 0 … 1; null: none
     float width_m = 1, height_m = 1;  ///< of one tile
     bool fits = false;                ///< tiles are stretched so that whole numbers of them fill what they cover
+    friend bool operator==(const Texture&, const Texture&) = default;
 };
 
 }  // namespace sgm::image

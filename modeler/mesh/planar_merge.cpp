@@ -1,6 +1,7 @@
 #include "modeler/mesh/planar_merge.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "modeler/core/parallel.h"
 #include "modeler/mesh/polyline.h"
@@ -22,6 +23,7 @@ PlanarMerge::PlanarMerge(const DecimationInput& input, double chain_m, double ro
       chain_m_(chain_m),
       rounding_m_(rounding_m),
       keep_(input.chains.vertices.size()),
+      given_(input.chains.vertices.size()),
       levels_(input.chains.chains.size()),
       left_(input.regions.count()),
       failed_(input.regions.count()),
@@ -94,7 +96,31 @@ void PlanarMerge::simplifyChain(uint32_t index, const Decimation& curved) {
         points.push_back(input_.mesh.positions[input_.chains.vertices[i]]);
     std::vector<bool> keep(points.size());
     simplifyPolyline(points, chain.closed, std::max(rounding_m_, share * chain_m_), keep);
-    std::copy(keep.begin(), keep.end(), keep_.begin() + chain.begin);
+    for (size_t i = 0; i < keep.size(); ++i) keep_[chain.begin + i] = keep[i] || given_[chain.begin + i];
+}
+
+bool PlanarMerge::splitEdges(uint32_t region, const Triangle& triangle) {
+    const auto isCorner = [&](uint32_t v) { return v == triangle.x || v == triangle.y || v == triangle.z; };
+    const auto at = [&](uint32_t place) { return input_.mesh.positions[input_.chains.vertices[place]].as<double>(); };
+    bool split = false;
+    for (const uint32_t c : input_.chains.around(region)) {
+        const Chain& chain = input_.chains.chains[c];
+        if (!isPlanar(chain.left) || !isPlanar(chain.right)) continue;
+        uint32_t before = Chains::none;
+        for (uint32_t i = chain.begin; i < chain.end; ++i) {
+            if (!keep_[i]) continue;
+            const uint32_t from = std::exchange(before, i);
+            if (from == Chains::none || i - from < 2 || !isCorner(input_.chains.vertices[from]) ||
+                !isCorner(input_.chains.vertices[i]))
+                continue;
+            uint32_t farthest = from + (i - from) / 2;
+            double most = 0;
+            for (uint32_t k = from + 1; k < i; ++k)
+                if (const double off = squaredDistance(at(k), at(from), at(i)); off > most) most = off, farthest = k;
+            keep_[farthest] = given_[farthest] = 1, split = true;
+        }
+    }
+    return split;
 }
 
 void PlanarMerge::triangulate(std::span<const uint32_t> regions, int threads, Progress* progress) {

@@ -21,6 +21,9 @@ public:
 
     /// Gives a region's chains points back, or leaves the region as it is; false when it was left so before.
     bool refine(uint32_t region, Decimation& curved);
+    /// Gives each edge of a triangle of the region that stands for several of a chain between planar regions its
+    /// farthest point back; false where there is none.
+    bool splitEdges(uint32_t region, const Triangle& triangle);
 
     /// Whether a planar region keeps its original triangles.
     bool isLeft(uint32_t region) const { return left_[region] != 0; }
@@ -39,6 +42,7 @@ private:
     const DecimationInput input_;
     const double chain_m_, rounding_m_;
     std::vector<uint8_t> keep_;                     ///< by place in the chains
+    std::vector<uint8_t> given_;                    ///< by place in the chains: kept at every level
     std::vector<uint8_t> levels_;                   ///< by chain: how often it was refined
     std::vector<uint8_t> left_, failed_;            ///< by region
     std::vector<std::vector<Triangle>> triangles_;  ///< by region

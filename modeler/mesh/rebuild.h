@@ -28,7 +28,7 @@ public:
 
     /// Blocks of the last mesh that were meshed anew.
     size_t blocksMade() const { return blocksMade_; }
-    /// And those that were kept, among them some that turned out to hold no surface.
+    /// Blocks of the last mesh that were kept from the one before, with those found to hold no surface.
     size_t blocksKept() const { return blocksKept_; }
 
 private:

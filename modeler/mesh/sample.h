@@ -50,8 +50,6 @@ public:
     uint64_t active() const { return active_; }
     /// Whether the block's tape is expensive.
     bool isExpensive() const { return useCoarseSampling_; }
-    /// Whether `sample` answers the block's own tape for every brick.
-    bool oneTape() const { return oneTape_; }
     /// Shortens the tape to an active brick and evaluates its corners, or those that no lower brick has where the tape
     /// is long. To be called in ascending order; the tape lasts until the next call.
     const eval::Tape& sample(int brick, eval::Workspace& workspace, Counts& counts);

@@ -7,6 +7,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "modeler/image/texture.h"
 #include "modeler/image/texture_frame.h"
 
 namespace sgm::mesh {
@@ -38,6 +39,8 @@ uint32_t indexOf(std::vector<Material>& all, std::map<std::string, std::vector<u
     for (const uint32_t i : known) {
         Material like = material;
         like.name = all[i].name;
+        // Every object has textures of its own.
+        if (like.texture && all[i].texture && *like.texture == *all[i].texture) like.texture = all[i].texture;
         if (like == all[i]) return i;
     }
     Material added = material;

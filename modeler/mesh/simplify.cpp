@@ -23,6 +23,7 @@ constexpr double planeShare = 0.25, chainShare = 0.5;
 constexpr double roundingShare = 0x1p-20;
 /// After so many rounds with faults the mesh stays as it is.
 constexpr int mostRounds = 24;
+constexpr int mostSplitRounds = 12;  ///< of these, in which edges of planar regions get a point back each
 constexpr int mostRetries = 2;       ///< of planar regions that couldn't be merged
 constexpr size_t leastRetried = 64;  ///< triangles of such a region that is worth it
 /// Of the result's triangles: what another try takes away at most has to be more, for it takes as long as the first.
@@ -131,6 +132,7 @@ private:
     /// The result with the planes as they are, nothing where it has faults.
     Result<std::optional<Mesh>> simplifyOnce(const Insides& insides) {
         const DecimationInput input{flat_, regions_, chains_, planes_};
+        splits_ = 0;
         curved_.emplace(input, DecimationLimits{tolerance_m_, chainShare * tolerance_m_});
         planar_.emplace(input, chainShare * tolerance_m_, rounding_m_);
 
@@ -200,6 +202,11 @@ private:
                 regions.push_back(triangles_[t].region);
         }
         if (refined) return true;
+        // Where one place is at fault, the rest of its regions needn't have their points back.
+        if (splits_++ < mostSplitRounds) {
+            for (const uint32_t t : faults) refined |= planar_->splitEdges(triangles_[t].region, triangles_[t].corners);
+            if (refined) return true;
+        }
         for (const uint32_t r : regions) refined |= planar_->refine(r, *curved_);
         return refined;
     }
@@ -214,6 +221,7 @@ private:
     std::vector<Plane> planes_;
     std::optional<Decimation> curved_;
     std::optional<PlanarMerge> planar_;
+    int splits_ = 0;                         ///< rounds that split edges at fault
     std::vector<SimpleTriangle> triangles_;  ///< of the result; those of `curved_` first, in its order
     size_t fewest_ = SIZE_MAX;               ///< triangles of a result, with faults or without
 };

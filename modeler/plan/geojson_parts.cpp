@@ -133,6 +133,27 @@ void readProperties(simdjson::dom::object object, std::vector<Property>& into) {
     }
 }
 
+namespace {
+
+/// Adds the positions of a geometry's coordinates, at any depth of lists.
+void addPositions(Json coordinates, Box2& box) {
+    if (const auto position = positionOf(coordinates)) return box.add(*position);
+    simdjson::dom::array list;
+    if (coordinates.get(list) == simdjson::SUCCESS)
+        for (const Json one : list) addPositions(one, box);
+}
+
+/// Adds the lines and polygons of a collection, a feature or a geometry.
+void addShapes(Json object, Box2& box) {
+    for (const char* list : {"features", "geometries"})
+        if (const auto items = findList(object, list))
+            for (const Json one : *items) addShapes(one, box);
+    if (const auto geometry = find(object, "geometry")) addShapes(*geometry, box);
+    const std::string_view type = member(object, "type");
+    if (!type.ends_with("LineString") && !type.ends_with("Polygon")) return;
+    if (const auto coordinates = find(object, "coordinates")) addPositions(*coordinates, box);
+}
+
 bool namesPlane(Json root) {
     const auto crs = find(root, "crs");
     const auto properties = crs ? find(*crs, "properties") : std::nullopt;
@@ -140,10 +161,15 @@ bool namesPlane(Json root) {
     return !name.empty() && name.find("CRS84") == name.npos && name.find("4326") == name.npos;
 }
 
-Plane planeOf(const Box2& box, bool isPlane, double farthest_m) {
+}  // namespace
+
+Plane planeOf(Json root, double farthest_m) {
     Plane plane;
+    Box2 box;
+    addShapes(root, box);
+    if (box.empty()) return plane;
     const Vec2 middle = box.centre();
-    plane.fromDegrees = !isPlane && box.lo.x >= -180 && box.hi.x <= 180 && box.lo.z >= -90 && box.hi.z <= 90;
+    plane.fromDegrees = !namesPlane(root) && box.lo.x >= -180 && box.hi.x <= 180 && box.lo.z >= -90 && box.hi.z <= 90;
     if (plane.fromDegrees) {  // metres of a degree on the WGS84 ellipsoid, by its series
         const double at = radians(middle.z);
         plane.scale.x = 111412.84 * std::cos(at) - 93.5 * std::cos(3 * at) + 0.118 * std::cos(5 * at);

@@ -50,11 +50,10 @@ struct Plane {
     /// As the file has it.
     Vec2 inFile(Vec2 p) const { return {p.x / scale.x + origin.x, origin.z - p.z / scale.z}; }
 };
-/// Whether the file says that its coordinates are on a plane (a member from before RFC 7946).
-bool namesPlane(Json root);
-/// Degrees about their middle where all points may be such and `isPlane` doesn't say otherwise; else metres, about the
-/// middle where they are large.
-Plane planeOf(const Box2& box, bool isPlane, double farthest_m);
+/// Degrees about their middle where all may be such and the file names no other system ("crs", from before RFC 7946);
+/// else metres, about the middle where they are farther than that from the origin. The middle is that of all lines and
+/// polygons of the file, so that those of one file fit together, whichever are read. O(points).
+Plane planeOf(Json root, double farthest_m);
 /// Error::Input where coordinates were taken for degrees and reach farther than that from their middle: they are hardly
 /// degrees.
 std::optional<Error> tooWideForDegrees(const Plane& plane, const Box2& box, double farthest_m);

@@ -70,9 +70,9 @@ Result<Features> readOutlines(const std::filesystem::path& path, const ReadLimit
 // the edge. Files without outlines are errors too.
 
 /// RFC 7946 polygons and multipolygons, alone or in features and collections; other geometries are passed over. Degrees
-/// are laid on a plane about the middle of all points (true to length there, .1 % off 10 km away), other coordinates
-/// are taken as metres, about the middle where they are large. x is east, z is south. Properties that are texts,
-/// numbers or truth values are kept; a list "tags" tags the edges of the first outline in the file's order.
+/// are laid on a plane about the middle of all lines and polygons (true to length there, .1 % off 10 km away), other
+/// coordinates are taken as metres, about that middle where they are large. x is east, z is south. Properties that are
+/// texts, numbers or truth values are kept; a list "tags" tags the edges of the first outline in the file's order.
 Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits = {}, const Progress* progress = nullptr);
 /// RFC 7946 lines, alone or in features and collections, by the same rules; other geometries are passed over.
 Result<Lines> readGeoJsonLines(std::string_view bytes, const ReadLimits& limits = {},

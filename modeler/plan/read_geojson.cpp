@@ -141,12 +141,12 @@ void forEachRing(Features& features, Fn&& fn) {
 }
 
 /// East and north to x and −z in metres.
-Result<Plane> layOnPlane(Features& features, bool isPlane, double farthest_m) {
+Result<Plane> layOnPlane(Features& features, Json root, double farthest_m) {
     Box2 box;
     forEachRing(features, [&](const Ring& ring) {
         for (const Vec2 p : ring.points) box.add(p);
     });
-    const Plane plane = planeOf(box, isPlane, farthest_m);
+    const Plane plane = planeOf(root, farthest_m);
     if (auto e = tooWideForDegrees(plane, box, farthest_m)) return *e;
     features.fromDegrees = plane.fromDegrees;
     features.east = plane.origin.x, features.north = plane.origin.z;
@@ -221,7 +221,7 @@ Result<Features> readGeoJson(std::string_view bytes, const ReadLimits& limits, c
     if (auto e = readFeatures(file->root, reading)) return *e;
     if (reading.features.list.empty())
         return Error{Error::Kind::Input, "it has no polygons; GeoJSON's Polygon and MultiPolygon are read"};
-    const auto plane = layOnPlane(reading.features, namesPlane(file->root), limits.footprint.farthest_m);
+    const auto plane = layOnPlane(reading.features, file->root, limits.footprint.farthest_m);
     if (!plane) return plane.error();
     if (auto e = makeSound(reading, *plane)) return *e;
     return std::move(reading.features);

@@ -87,11 +87,7 @@ Result<Lines> readGeoJsonLines(std::string_view bytes, const ReadLimits& limits,
     }
     if (reading.lines.list.empty())
         return Error{Error::Kind::Input, "it has no lines; GeoJSON's LineString and MultiLineString are read"};
-    Box2 box;
-    for (const LineFeature& feature : reading.lines.list)
-        for (const auto& line : feature.lines)
-            for (const Vec2 p : line) box.add(p);
-    const Plane plane = planeOf(box, namesPlane(file->root), limits.footprint.farthest_m);
+    const Plane plane = planeOf(file->root, limits.footprint.farthest_m);
     reading.lines.fromDegrees = plane.fromDegrees;
     for (LineFeature& feature : reading.lines.list)
         for (auto& line : feature.lines)

@@ -44,7 +44,7 @@ struct RasterLimits {
 /// caller to name the file.
 Result<RasterPtr> readRaster(const std::filesystem::path& path, const RasterLimits& limits = {},
                              const Progress* progress = nullptr);
-/// The same from bytes.
+/// Reads a PNG, TIFF or OpenEXR picture from memory. Error::Input and Error::Budget as readRaster().
 Result<RasterPtr> readRasterBytes(const std::string& bytes, const RasterLimits& limits = {});
 
 }  // namespace sgm::town

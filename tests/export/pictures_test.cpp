@@ -155,6 +155,15 @@ TEST_F(PicturesTest, UsdReadsThemByShaders) {
         EXPECT_NE(text.find(part), std::string::npos) << part;
 }
 
+TEST_F(PicturesTest, UsdNamesAPathThatHoldsTheSignAroundPaths) {
+    auto texture = std::make_shared<image::Texture>(*provenance.materials[1].texture);
+    folder.write("wood@2x.png", png);
+    texture->color = *image::readImageFile(folder / "wood@2x.png");
+    provenance.materials[1].texture = texture;
+    ASSERT_TRUE(write(input, folder / "a.usda").ok());
+    EXPECT_NE(contentOf(folder / "a.usda").find("asset inputs:file = @@@wood@2x.png@@@"), std::string::npos);
+}
+
 TEST_F(PicturesTest, GltfValidatorFindsNothing) {
     std::string command = "node tests/export/validate_gltf.js", verdict = (folder / "verdict").string();
     for (const std::string pack : {"none", "meshopt", "draco"}) {

@@ -145,6 +145,25 @@ TEST_F(TextureTest, SlopesAreMappedInTheirOwnPlane) {
     for (const mesh::Triangle& c : t.triangles) EXPECT_NEAR(area(t.texture, c), area(t, c), 1e-4);
 }
 
+TEST_F(TextureTest, SlopesThatACoarseCellMakesOneAreMappedInTheirOwnPlanes) {
+    // Both slopes of a roof under one label, as where a cell has no room for the crease between them.
+    mesh::Chunk roof;
+    roof.positions = {{-2, 0, -3}, {-2, 0, 3}, {0, 1.5f, -3}, {0, 1.5f, 3}, {2, 0, -3}, {2, 0, 3}};
+    roof.normals.assign(6, {0, 1, 0});
+    roof.triangles = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 5, 4}};
+    roof.origins.assign(4, part({}, {}));
+    roof.labels.assign(4, 7);
+    mesh = meshOfChunks({roof});
+    for (const bool isFaceted : {true, false}) {
+        provenance.parts.back().hasFlatFaces = isFaceted;
+        const Textured t = written();
+        ASSERT_EQ(t.triangles.size(), 4u);
+        for (const mesh::Triangle& c : t.triangles)
+            EXPECT_NEAR(area(t.texture, c), (isFaceted ? 1 : .8) * area(t, c), 1e-4)
+                << "curved ones are seen from above";
+    }
+}
+
 TEST_F(TextureTest, RoundThingsAreSeenAlongTheAxesOfTheirScope) {
     const Mat3 axes = Mat3::rotation({0, 1, 0}, radians(45));
     provenance.parts.clear();

@@ -68,7 +68,8 @@ const Combination combinations[] = {
      }},
     {"displace", true,
      [](Graph& g, Draws& d) {
-         const double amplitude = d.uniform(0, 0.3), frequency = d.uniform(0.5, 6);
+         const double amplitude = d.uniform(-0.3, 0.3),
+                      frequency = d.uniform(0.5, 6) * (d.uniform(0, 1) < 0.5 ? 1 : -1);
          const Noise noise = d.uniform(0, 1) < 0.5 ? Noise::Billow : Noise::Fbm;
          Field f = build(g, "sphere", {1, 1, 1});
          return displace(f, g.position(), noise, g.slot(static_cast<float>(amplitude)), amplitude,

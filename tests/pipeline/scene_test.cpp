@@ -9,6 +9,7 @@
 #include "grammar/pipeline/products.h"
 #include "grammar/pipeline/scene.h"
 #include "modeler/eval/evaluate.h"
+#include "modeler/image/texture.h"
 #include "modeler/mesh/validate.h"
 #include "tests/scratch.h"
 
@@ -229,6 +230,23 @@ TEST(Scene, ObjectsThatStandAreNotTold) {
     EXPECT_TRUE(
         floatsIn("start Town -> Lots size (60m, 1m, 10m)\nrule Lots -> row 3 along x gap 4m { place House }\n").empty())
         << "nothing else is solid";
+}
+
+TEST(Scene, ObjectsShareTexturesThatAreAlike) {
+    mesh::Scene scene;
+    for (const float width_m : {1.f, 1.f, 2.f}) {
+        auto texture = std::make_shared<image::Texture>();
+        texture->width_m = width_m;
+        mesh::SceneObject& object = scene.objects.emplace_back();
+        Material& brick = object.provenance.materials.emplace_back();
+        brick.name = "brick", brick.texture = texture;
+        object.provenance.parts.emplace_back().material = 1;
+    }
+    mesh::shareMaterials(scene);
+    std::vector<std::string> names;
+    for (const mesh::SceneObject& object : scene.objects)
+        names.push_back(object.provenance.materials[object.provenance.parts[1].material].name);
+    EXPECT_EQ(names, (std::vector<std::string>{"brick", "brick", "brick_2"}));
 }
 
 TEST(Scene, FilesHoldEachObjectOnce) {

@@ -71,6 +71,32 @@ TEST(GeoJson, LargeCoordinatesAreMovedAndCourtsAndSeveralPolygonsKept) {
     EXPECT_LT(std::abs(bounds(f->list[0].footprint).lo.x), 100);
 }
 
+TEST(GeoJson, LinesAndPolygonsOfAFileFitTogether) {
+    // A street from west to east, and a house 10 m north of its eastern end, by degrees and by large metres.
+    for (const auto& [east, north, metre] : {std::tuple(13.4, 52.0, 1 / 111229.0), std::tuple(5e5, 5.8e6, 1.0)}) {
+        const auto at = [&, e = east, n = north, m = metre](double x, double y) {
+            return fmt::format("[{:.9f},{:.9f}]", e + x * m, n + y * m);
+        };
+        const std::string line = at(0, 0) + "," + at(100, 0);
+        const std::string ring = at(90, 10) + "," + at(100, 10) + "," + at(100, 20) + "," + at(90, 20);
+        const std::string text =
+            R"({"type":"FeatureCollection","features":[
+            {"type":"Feature","geometry":{"type":"LineString","coordinates":[)" +
+            line + R"(]}},
+            {"type":"Feature","geometry":{"type":"GeometryCollection","geometries":[
+             {"type":"Polygon","coordinates":[[)" +
+            ring + "]]}]}}]}";
+        const auto polygons = readGeoJson(text);
+        const auto lines = readGeoJsonLines(text);
+        ASSERT_TRUE(polygons.ok() && lines.ok());
+        const Vec2 end = lines->list[0].lines[0][1];
+        Box2 house;
+        for (const Vec2 p : polygons->list[0].footprint.polygons[0].outer.points) house.add(p);
+        EXPECT_NEAR(house.hi.z - end.z, -10, .02) << east;
+        EXPECT_NEAR(std::abs(house.hi.x - end.x), 0, .02 + 40 * (east < 100)) << east;
+    }
+}
+
 TEST(GeoJson, CrossingOutlinesAreResolvedAndOtherFaultsLocated) {
     const auto bow = readGeoJson(collection(featureText("[[[1000,0],[1010,10],[1010,0],[1000,10]]]")));
     ASSERT_TRUE(bow.ok());
