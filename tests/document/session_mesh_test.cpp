@@ -33,5 +33,28 @@ TEST(SessionMeshes, AreForgottenWithTheirDocument) {
     EXPECT_EQ(session.mesh()->blocksKept, 0u);
 }
 
+TEST(SessionMeshes, AreFinishedWhenTheyAreAskedForAgain) {
+    const Document document(
+        "grammar 2\nstart A -> cube size (20, 1, 20) for k in 1..60 { + cube size (.05m, 2m, 20m) at +y "
+        "move (.3m * k - 9m, 0, 0) }\n");
+    const auto ask = [&](Session& session, int resolution) {
+        ShowRequest request = requestOf(document);
+        request.meshResolution = resolution;
+        session.show(request);
+    };
+    Session undisturbed, left;
+    ask(undisturbed, 48);
+    settle(undisturbed);
+    ASSERT_TRUE(undisturbed.mesh());
+    ask(left, 48);
+    while (!left.mesh()) left.poll();
+    ask(left, 0);  // the window shows the field while cells are halved around the slats
+    settle(left);
+    ask(left, 48);
+    settle(left);
+    EXPECT_EQ(left.mesh()->mesh->triangleCount(), undisturbed.mesh()->mesh->triangleCount());
+    EXPECT_EQ(left.problems(), undisturbed.problems());
+}
+
 }  // namespace
 }  // namespace sgm::document

@@ -48,7 +48,7 @@ TEST_F(Sessions, ShowAModelAndTellWhatChanged) {
         return was->fingerprint != before->fingerprint;
     };
     EXPECT_EQ(session.model()->model.derivation.steps.size(), 4u);
-    EXPECT_EQ(session.attempted(), document.revision());
+    EXPECT_EQ(session.revisions().attempted, document.revision());
     for (const char* stage : {"parse", "check", "derive", "lower", "compile"}) EXPECT_TRUE(stageRan(stage)) << stage;
 
     change("wide = 2.5", "wide = 2.6");
@@ -85,7 +85,7 @@ TEST_F(Sessions, BeginAtTheFirstStageThatChanged) {
     document.choose(choice, "Lock");
     show(session, document);
     EXPECT_EQ(session.model(), again) << "a lock changes no model";
-    EXPECT_EQ(session.attempted(), document.revision());
+    EXPECT_EQ(session.revisions().attempted, document.revision());
 }
 
 TEST_F(Sessions, FollowStartStyleAndWay) {
@@ -127,7 +127,7 @@ TEST_F(Sessions, ABrokenTextKeepsTheLastModel) {
     const auto good = session.model();
     change("rule B repeat n ->", "rule B repeat ->");
     EXPECT_EQ(session.model(), good);
-    EXPECT_EQ(session.attempted(), document.revision());
+    EXPECT_EQ(session.revisions().attempted, document.revision());
     ASSERT_FALSE(session.problems().empty());
     EXPECT_EQ(session.problems()[0].line, 6u);
 
@@ -351,7 +351,7 @@ TEST(LongSessions, CanBeCancelledAndOvertaken) {
     request.revision = 99;
     session.show(request);
     settle(session);
-    EXPECT_EQ(session.attempted(), 99u);
+    EXPECT_EQ(session.revisions().attempted, 99u);
     EXPECT_EQ(session.model()->model.derivation.steps.size(), 0u);
     EXPECT_TRUE(session.problems().empty());
     begin();  // and may go while it works

@@ -205,8 +205,7 @@ TEST_F(Dialogs, ExportAsksBeforeItReplacesAFile) {
     std::ofstream(folder / "test.ply") << "precious";
     click("tab.Export");
     drag("export.cells", 0.5, 0.5, 0.05, 0.5);
-    fill("export.file", (folder / "test.ply").string());
-    click("export.export");
+    fill("export.file", (folder / "test.ply").string());  // Return at its end presses the button
     until("a question", [](const auto& s) { return s["question"] != ""; });
     click("answer.Cancel");
     EXPECT_EQ(contentOf(folder / "test.ply"), "precious");
@@ -218,6 +217,37 @@ TEST_F(Dialogs, ExportAsksBeforeItReplacesAFile) {
     click("export.export");
     until("the mesh again, without a question", wrote);
     EXPECT_EQ(state()["question"], "");
+}
+
+TEST_F(Dialogs, AnExportIsNeverOfAnotherText) {
+    openText(ball);
+    const fs::path broken = folder / "broken.sgm";
+    std::ofstream(broken) << "grammar 1\nstart A -> cube size (1\n";
+    key("ctrl+o");
+    until("a dialog", [&](const auto&) { return has("open.folder"); });
+    key("ctrl+a");
+    type(broken.string());
+    key("Return");
+    until("the file", [](const auto& s) { return std::string(s["text"]).find("cube size (1") != std::string::npos; });
+    click("tab.Export");
+    drag("export.cells", 0.5, 0.5, 0.05, 0.5);
+    const auto isRefused = [](const auto& s) {
+        return s["notice"] == "The text has errors, and what is shown is older: nothing is written";
+    };
+    fill("export.file", (folder / "broken.ply").string());
+    until("a refusal", isRefused);
+    EXPECT_FALSE(fs::exists(folder / "broken.ply"));
+    // The text of the same file, once it is mended, and broken again.
+    std::ofstream(broken) << ball;
+    until("the file", [](const auto& s) { return s["text"] == ball && !s["busy"]; });
+    click("export.export");
+    until("the mesh", [](const auto& s) { return std::string(s["notice"]).starts_with("Wrote ") && !s["busy"]; });
+    fs::remove(folder / "broken.ply");
+    std::ofstream(broken) << "grammar 1\nstart Ball -> spher\n";
+    until("the file", [](const auto& s) { return std::string(s["text"]).ends_with("spher\n") && !s["busy"]; });
+    click("export.export");
+    until("a refusal", isRefused);
+    EXPECT_FALSE(fs::exists(folder / "broken.ply"));
 }
 
 TEST_F(Dialogs, ATurntableLeavesTheOneBefore) {

@@ -389,7 +389,6 @@ TEST_F(Verbs, AnExportGoesOnWhileOneWorks) {
     drag("export.cells", 0.2, 0.5, 0.99, 0.5);
     fill("export.file", (folder / "large.ply").string());
     EXPECT_FALSE(has("export.uv")) << "the file's ending chooses the format, and with it the options";
-    poke("export.export");
     until("a way to stop it", [&](const auto&) { return has("export.cancel"); });
     poke("export.cancel");
     until("its end", [&](const auto& s) { return s["notice"] == "cancelled" && !has("export.cancel"); });

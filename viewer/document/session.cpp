@@ -115,7 +115,8 @@ bool Session::poll() {
     queue_.wanted.notify_one();
     if (update.problems) problems_ = std::move(*update.problems);
     if (update.used) used_ = std::move(*update.used);
-    attempted_ = std::max(attempted_, update.attempted);
+    if (update.modelled) revisions_.modelled = *update.modelled;
+    revisions_.attempted = std::max(revisions_.attempted, update.attempted);
     return true;
 }
 
@@ -204,6 +205,7 @@ void Session::publish(Update update) {
         if (update.problems) queue_.update.problems = std::move(update.problems);
         if (update.used) queue_.update.used = std::move(update.used);
         queue_.update.attempted = std::max(queue_.update.attempted, update.attempted);
+        if (update.modelled) queue_.update.modelled = update.modelled;
         queue_.fresh = true;
     }
     if (notify_) notify_();
@@ -239,6 +241,7 @@ void Session::attempt(const ShowRequest& request, Progress& progress) {
         good = shown.ok();
         if (good) {
             if (*shown != last_.shown) update.model = *shown;
+            update.modelled = request.revision;
             last_.shown = *shown;
             // While a slider is dragged the last ones stay: to look for them takes as long as a frame.
             if (!follow) last_.problems.derived = problemsOf(derive::warnings(last_.shown->model.derivation));

@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "grammar/lower/thin_parts.h"
 #include "grammar/pipeline/files.h"
 #include "grammar/pipeline/live_edit.h"
 #include "grammar/pipeline/model.h"
@@ -94,8 +95,12 @@ public:
     const std::shared_ptr<const BuiltMesh>& mesh() const { return mesh_; }
     /// Of the last request that was tried: the parser's, the checker's and what went wrong later.
     const std::vector<Problem>& problems() const { return problems_; }
-    /// The revision that `problems` speaks of.
-    uint64_t attempted() const { return attempted_; }
+    struct Revisions {
+        uint64_t attempted = 0;  ///< that `problems` speaks of
+        uint64_t modelled =
+            0;  ///< of the last request that gave a model, which is `model`; a text with errors gives none
+    };
+    const Revisions& revisions() const { return revisions_; }
     /// The plan of the newest town, which is there before its model while a slider is dragged; null where there is
     /// none.
     std::shared_ptr<const town::TownPlan> plan() const;
@@ -123,6 +128,7 @@ private:
         std::shared_ptr<const town::TownPlan> plan;
         std::optional<std::vector<Problem>> problems;
         std::optional<std::vector<UsedFile>> used;
+        std::optional<uint64_t> modelled;
         uint64_t attempted = 0;
     };
 
@@ -165,6 +171,9 @@ private:
         std::shared_ptr<const derive::Derivation> handShown;
         std::shared_ptr<const BuiltMesh> meshed;
         int meshResolution = 0;
+        std::optional<std::vector<lower::ThinPart>>
+            missing;                  ///< of `meshed`, once its cells are halved around thin parts
+        bool isMeshFinished = false;  ///< and what is missing is told
         mesh::Rebuild rebuild{mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp}};
 
         /// No file that the grammar uses has changed since it was checked.
@@ -183,8 +192,8 @@ private:
                                                    std::vector<Problem>& problems);
     void sketchPlan(const std::shared_ptr<const rules::Grammar>& grammar, derive::Options options, Progress& progress);
     void meshIt(const ShowRequest& request, Progress& progress);
+    void finishMesh(Progress& progress);
     void meshCutOpen(const ShowRequest& request, Progress& progress);
-    void tellOfMesh();
     void publish(Update update);
 
     std::function<void()> notify_;
@@ -196,7 +205,7 @@ private:
     std::shared_ptr<const town::TownPlan> plan_;  ///< newer than the model's, or null
     std::vector<Problem> problems_;
     std::vector<UsedFile> used_;
-    uint64_t attempted_ = 0;
+    Revisions revisions_;
 
     Queue queue_;
     Last last_;

@@ -44,6 +44,8 @@ void Session::forgetMesh() {
 void Session::Last::forgetMesh() {
     rebuild = mesh::Rebuild(mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp});
     meshed.reset();
+    missing.reset();
+    isMeshFinished = false;
     problems.mesh.clear();
 }
 
@@ -55,7 +57,7 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
     }
     if (last_.meshed && last_.meshed->of == last_.shown && last_.meshResolution == request.meshResolution &&
         last_.meshed->section == request.section)
-        return tellOfMesh();
+        return request.dragging && !last_.isMeshFinished ? void() : finishMesh(progress);
     if (request.section) return meshCutOpen(request, progress);
     const Box3f& bounds = last_.shown->model.lowered->field.bounds;
     const float wished_m = mesh::cellFor(bounds, request.meshResolution),
@@ -84,31 +86,39 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
                       {"polygonize", meshed->counts.polygonizeSeconds}};
     last_.meshed = meshed;
     last_.meshResolution = request.meshResolution;
+    last_.missing.reset();
+    last_.isMeshFinished = false;
     Update update;
     update.mesh = meshed;
     publish(std::move(update));
     last_.problems.mesh.clear();
-    if (request.dragging || queue_.isSuperseded()) return;
-    pipeline::Context context{&progress};
-    const auto finer = withThinParts(*meshed, context);
-    if (!finer.ok()) return;
-    if (finer->mesh) {
-        last_.meshed = finer->mesh;
-        Update more;
-        more.mesh = finer->mesh;
-        publish(std::move(more));
-    }
-    const auto warnings =
-        pipeline::meshWarnings(last_.shown->model, *last_.meshed->mesh, meshed->grid, finer->missing, context);
-    if (!warnings.ok()) return;
-    syntax::Diagnostics found;
-    for (const pipeline::MeshWarning& w : *warnings) found.warning(w.span, w.text);
-    last_.problems.mesh = problemsOf(found);
-    tellOfMesh();
+    if (!request.dragging && !queue_.isSuperseded()) finishMesh(progress);
 }
 
-/// What floats or is too thin, behind what is known of the model.
-void Session::tellOfMesh() {
+/// Halves cells around thin parts and tells, behind what is known of the model, what floats or is missing all the same.
+/// Where it is cancelled, the next request goes on from what is done.
+void Session::finishMesh(Progress& progress) {
+    pipeline::Context context{&progress};
+    if (!last_.missing && !last_.isMeshFinished) {
+        auto finer = withThinParts(*last_.meshed, context);
+        if (!finer.ok()) return;
+        last_.missing = std::move(finer->missing);
+        if (finer->mesh) {
+            last_.meshed = finer->mesh;
+            Update update;
+            update.mesh = finer->mesh;
+            publish(std::move(update));
+        }
+    }
+    if (!last_.isMeshFinished) {
+        const auto warnings = pipeline::meshWarnings(last_.shown->model, *last_.meshed->mesh, last_.meshed->grid,
+                                                     *last_.missing, context);
+        if (!warnings.ok()) return;
+        syntax::Diagnostics found;
+        for (const pipeline::MeshWarning& w : *warnings) found.warning(w.span, w.text);
+        last_.problems.mesh = problemsOf(found);
+        last_.isMeshFinished = true;
+    }
     if (last_.problems.mesh.empty()) return;
     Update update;
     update.problems = last_.problems.model;
@@ -134,6 +144,7 @@ void Session::meshCutOpen(const ShowRequest& request, Progress& progress) {
     cut->section = request.section;
     last_.meshed = cut;
     last_.meshResolution = request.meshResolution;
+    last_.isMeshFinished = true;
     Update update;
     update.mesh = std::move(cut);
     publish(std::move(update));

@@ -71,7 +71,6 @@ public:
     /// False once it is known.
     bool ask(const CellSpace& space, Question& question);
     void answer(const CellSpace& space, float value);
-    bool isRunning() const { return running_; }
     bool found() const { return found_; }
 
 private:

@@ -1,6 +1,6 @@
-// Who walks rays through a prepared field: the GPU's shaders, or, where the driver has only a processor to run them on,
-// that processor's own vectors, which are an order of magnitude quicker there. Enters: rays of a picture. Leaves: what
-// their rays met, and the light there. Both walk alike (trace.comp.glsl, walks.h).
+// What traces rays through a prepared field: the GPU's shaders, or, where the driver has only a processor to run them
+// on, that processor's own vectors, which are an order of magnitude quicker there. Enters: rays of a picture. Leaves:
+// what their rays met, and the light there. Both trace alike (shaders/trace.comp.glsl, sphere_tracer.h).
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace sgm::render {
 
-/// Who walks here: `Best` becomes one of the others, by the current context.
+/// What traces here: `Best` becomes one of the others, by the current context.
 TracedBy tracerHere(TracedBy by);
 
 enum class HitKind { Sky, Object, Ground };

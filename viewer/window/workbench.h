@@ -172,7 +172,7 @@ public:
     void stepInside();
     /// The field shown will make room for another: not worth a finer picture.
     bool outdated() const {
-        return uploader.makesField() || (session.busy() && session.attempted() != document.revision());
+        return uploader.makesField() || (session.busy() && session.revisions().attempted != document.revision());
     }
     /// Stops what runs; what is shown stays.
     void cancel();

@@ -91,13 +91,16 @@ void ExportPanel::show(Workbench& bench) {
     chooseMesh(bench);
     for (document::ExportRow& row : options_) option(bench, row);
     heading("File");
-    // The ending says the format, whichever of the two is changed.
+    // The ending says the format, whichever of the two is changed, and while it is typed: later, the button would move
+    // away from a click that ends the typing.
     const auto formats = exporter::exporters();
-    if (field(bench.report, "export.file", file_))
-        if (const exporter::Exporter* named = exporter::exporterFor(file_); named && named != &formats[format_])
-            take(static_cast<size_t>(named - formats.data()));
+    field(bench.report, "export.file", file_);
+    const bool done = entered();
+    if (const exporter::Exporter* named = exporter::exporterFor(file_); named && named != &formats[format_])
+        take(static_cast<size_t>(named - formats.data()));
     ImGui::Dummy({0, 4});
-    if (button(bench.report, "export.export", "Export", nullptr, bench.shown() && !bench.exporting.running())) {
+    const bool isPossible = bench.shown() && !bench.exporting.running();
+    if (button(bench.report, "export.export", "Export", nullptr, isPossible) || (done && isPossible)) {
         document::ExportRequest request;
         request.file = document::typedPath(file_);
         request.resolution = resolution_;
