@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/cave.h"
 #include "cli/levels.h"
@@ -11,10 +12,11 @@
 #include "cli/validation.h"
 #include "grammar/lower/objects.h"
 #include "grammar/pipeline/buried.h"
-#include "grammar/pipeline/files.h"
 #include "grammar/pipeline/floating.h"
 #include "grammar/pipeline/gaps.h"
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/missing.h"
+#include "modeler/core/atomic_file.h"
 #include "modeler/core/packages.h"
 #include "modeler/mesh/edit.h"
 
@@ -32,18 +34,34 @@ struct Figures {
 
 bool wantsFigures(const BuildRequest& request) { return !request.quiet || !request.report.empty(); }
 
+/// Cells are counted along the field's bounds, of which blends, noise and cuts may leave much empty: says so.
+void warnOfWideBounds(const BuildRequest& request, const Model& model, const MeshedModel& meshed) {
+    constexpr double usualShare = .6;
+    const Box3f bounds = meshed.mesh.bounds();
+    const double wide_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
+    const double long_m = bounds.empty() ? 0 : static_cast<double>(maxComponent(bounds.size()));
+    if (request.quiet || request.grid.cell_m > 0 || !(long_m > 0 && long_m < usualShare * wide_m)) return;
+    printMessage(
+        "warning: the mesh is {:.3g} m long, {:.0f} of the {} cells, which are counted along the {:.3g} m that its "
+        "shapes "
+        "may reach; --cell {:g} gives it as many\n",
+        long_m, std::ceil(long_m / static_cast<double>(meshed.grid.cell_m)), request.grid.resolution, wide_m,
+        pipeline::withTwoDigits(long_m / request.grid.resolution));
+}
+
 /// The mesh as it is written, but for its sense.
 Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, MeshedModel& meshed,
                             const mesh::Scene& scene, Context& context) {
-    keepOnly(request.edits.keep, meshed, request.grid.threads, request.quiet);
+    warnOfWideBounds(request, model, meshed);
+    const bool quiet = request.quiet || reportsToStdout(request);  // on stdout
+    keepOnly(request.edits.keep, meshed, request.grid.threads, quiet);
     const float cell_m = meshed.grid.cell_m;
     size_t otherwise = 0;
     pipeline::MeshEdits edits = request.edits;
     edits.otherwise = &otherwise;
     auto mesh = pipeline::edited(std::move(meshed.mesh), edits, {model.tape, request.grid.surface, cell_m}, context);
     if (!mesh.ok()) return mesh;
-    if (mesh->triangleCount() == 0 && scene.empty() && !allFiles(request.out).empty())
-        return withOptions(pipeline::noSurface(model, cell_m));
+    if (mesh->triangleCount() == 0 && scene.empty()) return withOptions(pipeline::noSurface(model, cell_m));
     const double left = otherwise > 0 ? static_cast<double>(mesh->triangleCount()) / static_cast<double>(otherwise) : 0;
     if (request.edits.simplify < 1 && left > request.edits.simplify && !request.quiet)
         printMessage(
@@ -61,10 +79,10 @@ Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, Mes
             "--simplify .2 leaves fewer\n",
             mesh->triangleCount());
     if (request.validate && mesh->triangleCount() > 0)
-        if (const Status s = validated(*mesh, context); !s.ok()) return s.error();
+        if (const Status s = validated(*mesh, quiet, context); !s.ok()) return s.error();
     if (request.validate)
         for (const mesh::SceneObject& object : scene.objects)
-            if (const Status s = validated(object.mesh, context); !s.ok()) return s.error();
+            if (const Status s = validated(object.mesh, quiet, context); !s.ok()) return s.error();
     if (request.edits.smooth > 0 && !request.validate && !request.quiet) warnOfFaults(*mesh, context);
     return mesh;
 }
@@ -193,7 +211,7 @@ Status deliver(const BuildRequest& request, const Model& model, pipeline::Divisi
                                             figures.cave, context.stages, request.grid.threads);
         if (reportsToStdout(request))
             fmt::print("{}\n", json);
-        else if (const Status s = pipeline::writeText(request.report, json); !s.ok())
+        else if (const Status s = writeFile(request.report, json); !s.ok())
             return s;
     }
     if (!request.quiet && !reportsToStdout(request))

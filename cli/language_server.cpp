@@ -15,11 +15,13 @@
 #include <thread>
 
 #include "cli/commands.h"
+#include "cli/messages.h"
 #include "cli/trials.h"
 #include "grammar/derive/derive.h"
 #include "grammar/language/server.h"
 #include "grammar/pipeline/checks.h"
 #include "grammar/pipeline/files.h"
+#include "modeler/core/guarded.h"
 
 namespace sgm::cli {
 namespace {
@@ -195,7 +197,7 @@ private:
     std::thread thread_;
 };
 
-void readAll(Queue& queue) {
+void readMessages(Queue& queue) {
     while (const auto text = readMessage(stdin)) {
         Json message = Json::parse(*text, nullptr, false);
         if (message.is_discarded()) {
@@ -206,8 +208,28 @@ void readAll(Queue& queue) {
         queue.push(std::move(message));
         if (last) break;
     }
-    queue.close();
 }
+
+/// A thread that puts what the editor sends into a queue, until it sends the last message. It may wait for the next one
+/// for ever, so that it isn't waited for when the server ends by an exception.
+class Reader {
+public:
+    explicit Reader(const std::shared_ptr<Queue>& queue)
+        : thread_([queue] {
+              const Status read = guarded([&]() -> Status { return readMessages(*queue), Done{}; });
+              if (!read.ok()) printMessage("error: {}\n", read.error().message);
+              queue->close();
+          }) {}
+    ~Reader() {
+        if (thread_.joinable()) thread_.detach();
+    }
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+    void join() { thread_.join(); }
+
+private:
+    std::thread thread_;
+};
 
 /// What `sgm check` would say of the models, and of the grammar's own tests.
 void tryGrammar(const std::shared_ptr<const rules::Grammar>& grammar, Progress* progress, syntax::Diagnostics& found) {
@@ -243,13 +265,13 @@ int serve() {
     environment.tryModels = tryGrammar;
     environment.version = SGM_VERSION;
     language::Server server(std::move(environment));
-    Queue queue;
-    std::thread reader([&queue] { readAll(queue); });
-    Trials trials(server, queue);
+    const auto queue = std::make_shared<Queue>();
+    Reader reader(queue);
+    Trials trials(server, *queue);
     bool closed = false;
     while (!closed && server.exitCode() < 0) {
         auto next = trials.isBusy() ? std::nullopt : server.nextTrial();
-        const auto taken = queue.take(next ? std::optional(settled) : std::nullopt, closed);
+        const auto taken = queue->take(next ? std::optional(settled) : std::nullopt, closed);
         if (taken) {
             if (!isCalled(taken->message, "$/cancelRequest") && memberOf(taken->message, "id").is_null())
                 trials.cancel();

@@ -319,7 +319,7 @@ int render(RenderRequest request) {
     return done.ok() ? 0 : fail(done.error());
 }
 
-/// How fog looks, and how finely and by whom the rays are walked.
+/// How fog looks, and how finely and by what its rays are traced.
 void addRayOptions(CLI::App& app, RenderRequest& request) {
     app.add_option("--extinction", request.fog.extinction, "Of fog, per metre (default: 180 over the model's diagonal)")
         ->check(between(1e-6, 1e6));
@@ -331,9 +331,10 @@ void addRayOptions(CLI::App& app, RenderRequest& request) {
     app.add_option("--samples", request.samples, "Samples a pixel, for smooth edges")
         ->check(wholeNumber(1, 64))
         ->capture_default_str();
-    app.add_option("--rays", request.rays,
-                   "Who walks the rays of a field: shaders, the processor, or what is best here, the processor where "
-                   "OpenGL has no GPU")
+    app.add_option(
+           "--rays", request.rays,
+           "What traces the rays of a field: shaders, the processor, or the best of them here, which is the processor "
+           "where OpenGL has no GPU")
         ->check(oneOf({"best", "shaders", "processor"}))
         ->capture_default_str();
 }

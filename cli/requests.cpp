@@ -63,7 +63,7 @@ void addSectionOption(CLI::App& command, ModelRequest& request) {
 void addGridOptions(CLI::App& command, GridRequest& request) {
     auto* resolution =
         command.add_option("--resolution", request.resolution, "Cells along the longest side of the bounds");
-    resolution->check(wholeNumber(2, 8192))->capture_default_str();
+    resolution->check(wholeNumber(2, pipeline::mostResolution))->capture_default_str();
     command.add_option("--cell", request.cell_m, "Edge of a cell: .1, 10cm, 5mm")
         ->transform(metres())
         ->check(between(1e-6, 1e6))

@@ -7,7 +7,7 @@
 
 namespace sgm::cli {
 
-Status validated(const mesh::Mesh& mesh, Context& context) {
+Status validated(const mesh::Mesh& mesh, bool quiet, Context& context) {
     const auto judgement = context.timed("validate", [&] { return mesh::validate(mesh); });
     if (!judgement.ok()) return judgement.error();
     const std::string verdict =
@@ -16,7 +16,7 @@ Status validated(const mesh::Mesh& mesh, Context& context) {
                     judgement->selfIntersects ? "crosses itself" : "free of self-intersections", judgement->volume_m3);
     if (!judgement->closed || !judgement->outward || judgement->selfIntersects)
         return Error{Error::Kind::Input, verdict};
-    fmt::print("{}\n", verdict);
+    if (!quiet) fmt::print("{}\n", verdict);
     return Done{};
 }
 

@@ -7,8 +7,9 @@
 
 namespace sgm::cli {
 
-/// Prints whether the mesh is closed, oriented and free of self-intersections; Error::Input when it isn't.
-Status validated(const mesh::Mesh& mesh, Context& context);
+/// Whether the mesh is closed, oriented and free of self-intersections: Error::Input when it isn't, else a line unless
+/// `quiet`.
+Status validated(const mesh::Mesh& mesh, bool quiet, Context& context);
 
 /// Warns of a mesh that crosses itself or isn't closed, as smoothing may leave one.
 void warnOfFaults(const mesh::Mesh& mesh, Context& context);

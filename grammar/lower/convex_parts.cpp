@@ -23,7 +23,7 @@ using rules::Operator;
 enum class Unlike { Missing, Uncut, Sharp, Plain, Morphed };
 constexpr std::array<std::string_view, 5> unlikeTexts{
     "has no convex parts: left out", "cuts, and has no convex parts: its holes are closed",
-    "melts into others: taken as sharp", "has noise or cladding: taken without",
+    "blends into others: taken as sharp", "has noise or cladding: taken without",
     "morphs what stands: the nearer end is taken"};
 
 /// Follows Lowering (lowering.h): the same walk, the same joins, with polyhedra instead of fields.

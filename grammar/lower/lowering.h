@@ -1,6 +1,6 @@
 // The walk from shapes to fields, and what it leaves for a second one.
-// Enters: a derivation. Leaves: graph, field and parts in the model. Assumes parents before their children. The doors
-// are lower.h, for a model once, and relowering.h, for one that follows its derivation.
+// Enters: a derivation. Leaves: graph, field and parts in the model. Assumes parents before their children. The entry
+// points are lower.h, for a model once, and incremental_lowering.h, for one that follows its derivation.
 #pragma once
 
 #include <set>

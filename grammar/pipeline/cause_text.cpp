@@ -1,9 +1,8 @@
 // Why a piece floats, in words.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "grammar/pipeline/gaps.h"
+#include "grammar/pipeline/grids.h"
 
 namespace sgm::pipeline {
 namespace {
@@ -38,14 +37,13 @@ std::string causeText(const Model& model, const FloatCause& cause, float cell_m)
                 partText(model, cause.ours), partText(model, cause.theirs), at.x, at.y, at.z, cell_m);
         case FloatCause::Kind::Thin:
         case FloatCause::Kind::Fragment: {
-            const double extent_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
             const std::string part = partText(model, cause.theirs);
             const std::string what =
                 cause.kind == FloatCause::Kind::Thin
                     ? fmt::format("{}, {:.3g} m thick, holds it and", part, cause.width_m)
                     : fmt::format("it is a fragment of a wall of {:.3g} m of {}, which", cause.width_m, part);
-            return fmt::format("{} is thinner than a cell of {:.3g} m: --resolution {} shows it", what, cell_m,
-                               static_cast<int>(std::ceil(extent_m / cause.whole_m)));
+            return fmt::format("{} is thinner than a cell of {:.3g} m: {} shows it", what, cell_m,
+                               optionForCells(model.lowered->field.bounds, cause.whole_m));
         }
     }
     return {};

@@ -1,5 +1,7 @@
 #include "grammar/pipeline/grids.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -143,6 +145,17 @@ mesh::Grid moveOffPlanes(mesh::Grid grid, const derive::Derivation& derivation) 
         grid.origin[axis] += grid.cell_m * static_cast<float>(shift) / static_cast<float>(bins);
     }
     return grid;
+}
+
+double withTwoDigits(double value) {
+    const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+    return std::floor(value / unit + 1e-9) * unit;
+}
+
+std::string optionForCells(const Box3f& bounds, double cell_m) {
+    const double count = std::ceil(static_cast<double>(maxComponent(bounds.size())) / cell_m);
+    return count <= mostResolution ? fmt::format("--resolution {:.0f}", count)
+                                   : fmt::format("--cell {:g}", withTwoDigits(cell_m));
 }
 
 mesh::Grid gridOver(const Box3f& bounds, const CellSize& size) {

@@ -13,6 +13,15 @@ struct CellSize {
     double cell_m = 0;     ///< metres; > 0 goes before `resolution`
 };
 
+constexpr int mostResolution = 8192;  ///< cells that the options --resolution and the Python module take
+
+/// The option that asks for cells of at most so many metres: "--resolution 160", or "--cell 0.0012" where that is more
+/// than `mostResolution`.
+std::string optionForCells(const Box3f& bounds, double cell_m);
+
+/// The number of two digits that is no larger; of positive ones.
+double withTwoDigits(double value);
+
 /// The grid over bounds.
 mesh::Grid gridOver(const Box3f& bounds, const CellSize& size);
 /// The grid over the model's bounds. For crisp surfaces it is moved off the model's planes.

@@ -11,6 +11,7 @@
 #include "grammar/lower/solids.h"
 #include "grammar/pipeline/buried.h"
 #include "grammar/pipeline/gaps.h"
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/holding_cells.h"
 #include "modeler/mesh/region.h"
 
@@ -122,12 +123,6 @@ bool isNamedAsOne(const Line& line, lower::ThinPart::Kind kind) {
     return kind == Kind::Rim || (line.parts == 1 && kind != Kind::Eaves);
 }
 
-/// The largest number of two digits that is no larger.
-double withTwoDigits(double value) {
-    const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-    return std::floor(value / unit + 1e-9) * unit;
-}
-
 }  // namespace
 
 Result<std::vector<lower::ThinPart>> findMissingParts(const Model& model, const MeshedModel& meshed, int threads,
@@ -146,8 +141,7 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
     const std::string whose = object.empty() ? "the mesh's cells" : fmt::format("the cells of '{}'", object);
     const auto remedy = [&](double cell_m) {
         if (!object.empty()) return fmt::format("--object-cell {:g}", withTwoDigits(cell_m));
-        const auto extent_m = static_cast<double>(maxComponent(model.lowered->field.bounds.size()));
-        return fmt::format("--resolution {}", static_cast<int>(std::ceil(extent_m / cell_m)));
+        return optionForCells(model.lowered->field.bounds, cell_m);
     };
     const Box3f& bounds = model.lowered->field.bounds;
     const auto farthest_m = static_cast<double>(std::max(maxComponent(bounds.hi), -minComponent(bounds.lo)));

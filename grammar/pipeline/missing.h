@@ -23,7 +23,7 @@ std::vector<MeshWarning> missingWarnings(const Model& model, const mesh::Grid& g
 /// Looks at a mesh as it comes from makeMesh for what floats, why, for what is buried and what is too thin: what every
 /// command and the window tell alike. Error::Cancelled.
 Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const MeshedModel& meshed, Context& context);
-/// The same where the parts that the mesh lacks are known.
+/// What meshWarnings() says where the parts that the mesh lacks are known: `missing` is what findMissingParts() gave.
 Result<std::vector<MeshWarning>> meshWarnings(const Model& model, const mesh::Mesh& mesh, const mesh::Grid& grid,
                                               const std::vector<lower::ThinPart>& missing, Context& context);
 

@@ -139,5 +139,27 @@ TEST_F(Cli, ProxyIsASecondCoarseMesh) {
     EXPECT_EQ(sgm("build examples/joints.sgm --proxy-tolerance 1").code, 2) << "of no proxy";
 }
 
+TEST_F(Cli, AReportOnTheStandardOutputStandsThereAlone) {
+    const std::string file = grammar("start A -> cube size 4, cube size .5 move (6, 0, 0)\n");
+    const Outcome run = sgm("build " + file + " --resolution 32 --keep largest --validate --report - 2> /dev/null");
+    EXPECT_EQ(run.code, 0);
+    EXPECT_TRUE(Json::accept(run.out)) << run.out;
+}
+
+TEST_F(Cli, AModelOfWhichNothingIsLeftIsAnErrorWithoutAFileToo) {
+    const std::string file = grammar("start A -> cube size 2 & cube size 2 move (5, 0, 0)\n");
+    for (const char* words : {"", " --report -"}) EXPECT_EQ(sgm("build " + file + words).code, 1) << words;
+}
+
+TEST_F(Cli, BoundsThatReachFarBeyondTheMeshAreTold) {
+    const std::string wide = grammar("start A -> cube size 10 & cube size (1, 10, 1)\n");
+    const Outcome exact = sgm("build " + wide + " --resolution 32");
+    EXPECT_EQ(exact.out.find("warning"), std::string::npos) << exact.out;
+    const std::string noisy = grammar("start A -> sphere size 1 displace billow(2m, .01/m)\n");
+    const Outcome loose = sgm("build " + noisy + " --resolution 32");
+    EXPECT_NE(loose.out.find("of the 32 cells, which are counted along"), std::string::npos) << loose.out;
+    EXPECT_EQ(sgm("build " + noisy + " --cell .05").out.find("which are counted along"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace sgm::cli

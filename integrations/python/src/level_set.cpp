@@ -16,7 +16,8 @@ const volume::Dense& denseOf(LevelSet& set) {
             const py::gil_scoped_release withoutLock;
             return volume::dense(set.volume, 1);
         }();
-        set.dense = valueOf(std::move(made));
+        // Another thread may have made them meanwhile, and arrays may show them: those stay.
+        if (!set.dense) set.dense = valueOf(std::move(made));
     }
     return *set.dense;
 }

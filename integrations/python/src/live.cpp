@@ -28,7 +28,25 @@ Result<std::shared_ptr<Mesh>> follow(Live& live, const derive::Options& options,
     return finish(std::move(model), std::move(*meshed), live.request, context);
 }
 
+/// Keeps a model from being changed by two threads of Python at once, or by its own progress callback.
+class InUse {
+public:
+    explicit InUse(Live& live) : live_(live) {
+        if (live.isInUse)
+            raise(
+                Error{Error::Kind::Usage, "this live model is being meshed already: make another one for each thread"});
+        live.isInUse = true;
+    }
+    ~InUse() { live_.isInUse = false; }
+    InUse(const InUse&) = delete;
+    InUse& operator=(const InUse&) = delete;
+
+private:
+    Live& live_;
+};
+
 std::shared_ptr<Mesh> meshOf(Live& live, const Choice& choice, const py::object& progress) {
+    const InUse thisCall(live);
     const derive::Options options = choice.optionsFor(*live.rules);
     pipeline::Stages stages;
     auto made = staged<std::shared_ptr<Mesh>>(progress, live.threads, stages,

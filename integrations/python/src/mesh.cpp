@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "grammar/pipeline/grids.h"
 #include "grammar/pipeline/products.h"
 #include "integrations/python/src/call.h"
 #include "integrations/python/src/objects.h"
@@ -55,22 +56,30 @@ py::array originsOf(const py::object& self) {
 }
 
 /// The normal at each corner of each triangle: its own where it has one, else its vertex's.
+PageVector<Vec3f> normalsByCorner(const Mesh& mesh) {
+    PageVector<Vec3f> found(3 * mesh.chunks.triangleCount());
+    const auto& normals = mesh.isOneChunk() ? mesh.chunks.chunks[0].normals : mesh.normals;
+    size_t first = 0;
+    for (const mesh::Chunk& chunk : mesh.chunks.chunks) {
+        for (size_t t = 0; t < chunk.triangles.size(); ++t)
+            for (int corner = 0; corner < 3; ++corner)
+                found[3 * (first + t) + static_cast<size_t>(corner)] =
+                    normals[chunk.inMesh(chunk.triangles[t][corner])];
+        for (const mesh::CornerNormal& own : chunk.cornerNormals) found[3 * first + own.corner] = own.normal;
+        first += chunk.triangles.size();
+    }
+    return found;
+}
+
 py::array cornerNormalsOf(const py::object& self) {
     const auto mesh = self.cast<std::shared_ptr<Mesh>>();
     if (mesh->cornerNormals.empty()) {
-        const py::gil_scoped_release withoutLock;
-        mesh->cornerNormals.resize(3 * mesh->chunks.triangleCount());
-        const auto& normals = mesh->isOneChunk() ? mesh->chunks.chunks[0].normals : mesh->normals;
-        size_t first = 0;
-        for (const mesh::Chunk& chunk : mesh->chunks.chunks) {
-            for (size_t t = 0; t < chunk.triangles.size(); ++t)
-                for (int corner = 0; corner < 3; ++corner)
-                    mesh->cornerNormals[3 * (first + t) + static_cast<size_t>(corner)] =
-                        normals[chunk.inMesh(chunk.triangles[t][corner])];
-            for (const mesh::CornerNormal& own : chunk.cornerNormals)
-                mesh->cornerNormals[3 * first + own.corner] = own.normal;
-            first += chunk.triangles.size();
-        }
+        auto found = [&] {
+            const py::gil_scoped_release withoutLock;
+            return normalsByCorner(*mesh);
+        }();
+        // Another thread may have found them meanwhile, and arrays may show them: those stay.
+        if (mesh->cornerNormals.empty()) mesh->cornerNormals = std::move(found);
     }
     const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(mesh->cornerNormals.size() / 3), 3, 3};
     py::array array(py::dtype::of<float>(), shape, {36, 12, 4}, mesh->cornerNormals.data(), self);
@@ -227,7 +236,7 @@ MeshRequest requestOf(int resolution, std::optional<double> cell_m, const std::s
     const auto check = [](bool fine, const char* message) {
         if (!fine) throw py::value_error(message);
     };
-    check(resolution >= 2 && resolution <= 8192, "resolution is from 2 to 8192 cells");
+    check(resolution >= 2 && resolution <= pipeline::mostResolution, "resolution is from 2 to 8192 cells");
     check(!cell_m || (*cell_m >= 1e-6 && *cell_m <= 1e6), "cell is from 1e-6 to 1e6 metres");
     check(surface == "crisp" || surface == "cubes", "surface is 'crisp' or 'cubes'");
     check(keep == "all" || keep == "grounded" || keep == "largest", "keep is 'all', 'grounded' or 'largest'");

@@ -93,6 +93,7 @@ struct Live {
     int threads = 0;
     mesh::Grid grid;
     std::unique_ptr<pipeline::IncrementalPipeline> pipeline;
+    bool isInUse = false;  ///< by a call that runs; read and written with Python's lock held
 };
 
 /// What chooses a model: arguments of `Grammar.model` and `Live.mesh`.
