@@ -128,6 +128,7 @@ void fill(Grammar& grammar, const Files& files, const Loader& load, const syntax
     findSharesOfNothing(grammar, diagnostics);
     findUnsized(grammar, diagnostics);
     findUnusedHeights(grammar, diagnostics);
+    findRoofsOverTheScope(grammar, diagnostics);
     findWaitingCycles(grammar, diagnostics);
     findEndless(grammar, diagnostics);
     findValuesOfOwnOutline(grammar, diagnostics);

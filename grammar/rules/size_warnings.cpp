@@ -36,7 +36,7 @@ bool givesSize(const Attribute& a) { return takes(a, syntax::ArgumentType::Size)
 bool isSized(const Element& e) {
     const auto sizes = [](const Attribute& a) {
         return a.operation->phase == Operation::Phase::Scope &&
-               (givesSize(a) || takes(a, syntax::ArgumentType::Plan) || takes(a, syntax::ArgumentType::Length) ||
+               (givesSize(a) || a.plan || takes(a, syntax::ArgumentType::Length) ||
                 takes(a, syntax::ArgumentType::Point));
     };
     return std::any_of(e.prefix.begin(), e.prefix.end(), sizes) ||
@@ -99,6 +99,25 @@ bool saysHeight(const Attribute& a) {
     return height && height->units[0] == Unit::Metre;
 }
 
+/// Whether an element has another plan than the scope that it stands in, as far as constants tell.
+bool hasOtherPlan(const Element& e) {
+    const auto changes = [](const Attribute& a) {
+        if (a.operation->phase != Operation::Phase::Scope) return false;
+        if (a.plan) return true;
+        if (!givesSize(a)) return false;
+        const bool isTuple = a.args[0].kind == Expr::Kind::Tuple && a.args[0].args.size() == 3;
+        for (const size_t axis : {0u, 2u}) {
+            const auto value = fold(isTuple ? a.args[0].args[axis] : a.args[0], {});
+            const size_t at = value && value->count == 3 ? axis : 0;
+            if (value && (value->units[at] == Unit::Metre || (value->units[at] == Unit::Share && value->n[at] != 1)))
+                return true;
+        }
+        return false;
+    };
+    return std::any_of(e.prefix.begin(), e.prefix.end(), changes) ||
+           std::any_of(e.attributes.begin(), e.attributes.end(), changes);
+}
+
 }  // namespace
 
 void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
@@ -131,6 +150,27 @@ void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
                     fmt::format("write its size, such as 'size (4, {}, 4)'; in a rule of what the start names it fills "
                                 "that shape's scope",
                                 hasOwnHeight(e) ? "100%" : "3"));
+            }
+        }
+    }
+}
+
+void findRoofsOverTheScope(const Grammar& grammar, syntax::Diagnostics& diagnostics) {
+    for (const Rule& rule : grammar.rules) {
+        if (rule.span.source != grammar.sources[0].get()) continue;
+        for (const auto& chain : rule.body.siblings) {
+            if (chain.empty() || chain[0].kind != Element::Kind::Shape || !hasOtherPlan(chain[0])) continue;
+            for (size_t i = 1; i < chain.size(); ++i) {
+                const Element& e = chain[i];
+                if (e.kind != Element::Kind::Shape || e.op != Operator::Sum || !e.inMatchedFrame || e.on ||
+                    !e.content.solid() || !hasOwnHeight(e) || isSized(e))
+                    continue;
+                diagnostics.warning(e.span,
+                                    fmt::format("'{}' stands over the whole scope of '{}', not over the '{}' before it",
+                                                e.label, grammar.symbols[rule.symbol].name, chain[0].label),
+                                    fmt::format("write ': Top' behind '{}' and 'rule Top -> + {} … at +y', or give "
+                                                "the roof the same footprint or size",
+                                                chain[0].label, e.label));
             }
         }
     }

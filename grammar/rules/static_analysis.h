@@ -20,6 +20,10 @@ void findSharesOfNothing(const Grammar& grammar, syntax::Diagnostics& diagnostic
 /// Warns of solids that join the first shape of a start, which has a size, without one of their own: they are 1 m.
 void findUnsized(const Grammar& grammar, syntax::Diagnostics& diagnostics);
 
+/// Warns of roofs in rules of the main file that join a shape with a plan or a size of its own, and have none: they
+/// stand over the whole scope, not over that shape.
+void findRoofsOverTheScope(const Grammar& grammar, syntax::Diagnostics& diagnostics);
+
 /// Warns of heights in sizes behind shapes that do nothing: roofs that grow on others are as high as their pitch makes
 /// them, shapes between two points as long as these are apart.
 void findUnusedHeights(const Grammar& grammar, syntax::Diagnostics& diagnostics);

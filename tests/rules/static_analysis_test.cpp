@@ -62,6 +62,21 @@ TEST(Plans, ThatASolidTakesNoNoticeOfAreTold) {
     EXPECT_EQ(judged("rule A -> footprint ell(16, 12, 5, 6) inner cube\n"), "");
 }
 
+TEST(Roofs, OverTheScopeInPlaceOfTheShapeBeforeThemAreTold) {
+    const auto told = [](const std::string& rule) {
+        return checked("grammar 2\nstart S -> cube size (20, 4, 20) : A\nrule A -> " + rule + "\n").messages();
+    };
+    const std::string ofBlock =
+        "warning: 'hipRoof' stands over the whole scope of 'A', not over the 'block' before it\n";
+    EXPECT_EQ(told("footprint ell(11, 10, 4, 4) block + hipRoof(40deg) at +y"), ofBlock);
+    EXPECT_EQ(told("setback 2m block + hipRoof at +y"), ofBlock);
+    EXPECT_EQ(told("size (50%, 100%, 100%) block + hipRoof at +y"), ofBlock);
+    EXPECT_EQ(told("size (100%, 3m, 100%) block + hipRoof at +y"), "");
+    EXPECT_EQ(told("footprint ell(11, 10, 4, 4) block + footprint ell(11, 10, 4, 4) hipRoof at +y"), "");
+    EXPECT_EQ(told("block + hipRoof at +y"), "");
+    EXPECT_EQ(told("size (8, 3, 8) cube + cube size 1 at +y"), "");
+}
+
 TEST(Sizes, ThatUndoWhatStandsBeforeThemAreTold) {
     EXPECT_EQ(judged("rule A -> footprint rect(10, 10) extrude 3m size (4, 4, 4) block\n"),
               "warning: this size undoes 'extrude' before it\n");
