@@ -34,7 +34,8 @@ struct Figures {
 
 bool wantsFigures(const BuildRequest& request) { return !request.quiet || !request.report.empty(); }
 
-/// Cells are counted along the field's bounds, of which blends, noise and cuts may leave much empty: says so.
+/// Warns where the mesh is much shorter than the field's bounds, along which cells are counted: blends, noise and cuts
+/// may leave much of these empty.
 void warnOfWideBounds(const BuildRequest& request, const Model& model, const MeshedModel& meshed) {
     constexpr double usualShare = .6;
     const Box3f bounds = meshed.mesh.bounds();
@@ -43,8 +44,7 @@ void warnOfWideBounds(const BuildRequest& request, const Model& model, const Mes
     if (request.quiet || request.grid.cell_m > 0 || !(long_m > 0 && long_m < usualShare * wide_m)) return;
     printMessage(
         "warning: the mesh is {:.3g} m long, {:.0f} of the {} cells, which are counted along the {:.3g} m that its "
-        "shapes "
-        "may reach; --cell {:g} gives it as many\n",
+        "shapes may reach; --cell {:g} gives it as many\n",
         long_m, std::ceil(long_m / static_cast<double>(meshed.grid.cell_m)), request.grid.resolution, wide_m,
         pipeline::withTwoDigits(long_m / request.grid.resolution));
 }
@@ -53,7 +53,7 @@ void warnOfWideBounds(const BuildRequest& request, const Model& model, const Mes
 Result<mesh::Mesh> editMesh(const BuildRequest& request, const Model& model, MeshedModel& meshed,
                             const mesh::Scene& scene, Context& context) {
     warnOfWideBounds(request, model, meshed);
-    const bool quiet = request.quiet || reportsToStdout(request);  // on stdout
+    const bool quiet = request.quiet || reportsToStdout(request);  // of what goes to stdout
     keepOnly(request.edits.keep, meshed, request.grid.threads, quiet);
     const float cell_m = meshed.grid.cell_m;
     size_t otherwise = 0;

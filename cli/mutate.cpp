@@ -201,11 +201,7 @@ Status saveChoice(const MutateRequest& request, const rules::Grammar& grammar, c
         return Error{Error::Kind::Usage,
                      fmt::format("--pick {}: the sheet has 0 … {}", request.pick, found.size() - 1)};
     const syntax::SourcePtr& source = grammar.sources[0];
-    const auto now = pipeline::readSource(request.model.file);
-    if (!now.ok()) return now.error();
-    if ((*now)->text() != source->text())
-        return Error{Error::Kind::Input,
-                     fmt::format("'{}' was changed by another program: nothing was saved", request.model.file)};
+    if (const Status s = checkUnchanged(request.model.file, grammar); !s.ok()) return s;
     syntax::Diagnostics diagnostics;
     const syntax::Ast ast = syntax::parse(source, operations::table(), diagnostics);
     std::vector<NamedValue> values;

@@ -134,6 +134,13 @@ Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& re
     return grammar;
 }
 
+Status checkUnchanged(const std::string& file, const rules::Grammar& grammar) {
+    const auto now = pipeline::readSource(file);
+    if (!now.ok()) return now.error();
+    if ((*now)->text() == grammar.sources[0]->text()) return Done{};
+    return Error{Error::Kind::Input, fmt::format("'{}' was changed by another program: nothing was saved", file)};
+}
+
 Result<Model> makeModel(const ModelRequest& request, Context& context, pipeline::Objects objects) {
     const auto section = request.section.empty() ? Result<pipeline::Section>(pipeline::Section{})
                                                  : pipeline::parseSection(request.section);

@@ -69,6 +69,9 @@ void addEditOptions(CLI::App& command, MeshEdits& edits);
 Result<std::shared_ptr<const rules::Grammar>> loadGrammar(const ModelRequest& request, Context& context,
                                                           std::vector<std::filesystem::path>* read = nullptr);
 
+/// Error::Input where the file has another text by now than the grammar was read from: nothing may be saved into it.
+Status checkUnchanged(const std::string& file, const rules::Grammar& grammar);
+
 /// A model from the file on.
 Result<Model> makeModel(const ModelRequest& request, Context& context,
                         pipeline::Objects objects = pipeline::Objects::Grafted);

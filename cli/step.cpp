@@ -165,10 +165,7 @@ Result<std::string> Dialogue::wayLine(const std::string& name) const {
 
 /// Writes the way into the file, unless the file has changed since, or the line wouldn't lead to this very tree.
 Status Dialogue::save(const std::string& name) {
-    const auto now = pipeline::readSource(request_.file);
-    if (!now.ok()) return now.error();
-    if ((*now)->text() != grammar_->sources[0]->text())
-        return refusal(fmt::format("'{}' was changed by another program: nothing was saved", request_.file));
+    if (const Status s = checkUnchanged(request_.file, *grammar_); !s.ok()) return s;
     const auto options = optionsFor(*grammar_, request_);
     if (!options.ok()) return options.error();
     const auto saved = document::withWay(session_, *grammar_, *options, name, pipeline::fileLoader());

@@ -7,8 +7,8 @@
 
 namespace sgm::cli {
 
-/// Whether the mesh is closed, oriented and free of self-intersections: Error::Input when it isn't, else a line unless
-/// `quiet`.
+/// Error::Input unless the mesh is closed, oriented and free of self-intersections, by CGAL; where it is, prints so
+/// unless `quiet`.
 Status validated(const mesh::Mesh& mesh, bool quiet, Context& context);
 
 /// Warns of a mesh that crosses itself or isn't closed, as smoothing may leave one.

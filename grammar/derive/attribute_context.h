@@ -51,6 +51,7 @@ struct AttributeContext {
 
     rules::Value evaluate(const rules::Expr& expr) const { return derive::evaluate(expr, place); }
     double number(const rules::Expr& expr) const { return derive::number(expr, place); }
+    /// As derive::numberWithin() where the attribute stands.
     double numberWithin(const rules::Expr& expr, double lo, double hi, std::string_view name) const {
         return derive::numberWithin(expr, place, lo, hi, name);
     }

@@ -357,6 +357,20 @@ Vector vector(const Expr& expr, const Place& place, bool eachDraws) {
     return r;
 }
 
+double numberWithin(const Expr& expr, const Place& place, double lo, double hi, std::string_view name) {
+    const double n = number(expr, place);
+    if (n >= lo && n <= hi) return n;
+    if (place.builder) {
+        const auto text = [&](double v) { return rules::toText(Value::number(v, evaluate(expr, place).units[0])); };
+        place.builder->warn(expr.span,
+                            std::isinf(hi)
+                                ? fmt::format("{} is {}, but must be no less than {}", name, text(n), text(lo))
+                                : fmt::format("{} is {}, but must be {} … {}", name, text(n), text(lo), text(hi)),
+                            std::isinf(hi) ? fmt::format("it counts as {}", text(lo)) : rules::countsAsNearestEnd);
+    }
+    return std::clamp(n, lo, hi);
+}
+
 Mat3 rotation(const Value& v) {
     if (v.kind == Value::Kind::Rotation)
         return {{v.n[0], v.n[1], v.n[2]}, {v.n[3], v.n[4], v.n[5]}, {v.n[6], v.n[7], v.n[8]}};

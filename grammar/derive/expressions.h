@@ -61,8 +61,8 @@ struct Vector {
 /// One number counts for every axis; with `eachDraws`, a range of numbers draws every component by itself.
 Vector vector(const rules::Expr& expr, const Place& place, bool eachDraws);
 
-/// The first component, or the nearest of both ends where it lies beyond them: the derivation then warns of `name`
-/// ("'blend'") at the expression.
+/// The first component, or the nearest of `lo` and `hi` where it lies beyond them: the derivation then warns of `name`,
+/// as "'blend'", at the expression.
 double numberWithin(const rules::Expr& expr, const Place& place, double lo, double hi, std::string_view name);
 
 /// The rotation that an angle (about y), three angles (x, then y, then z) or a rotation means.

@@ -1,34 +1,13 @@
-// Solids as a shape evaluates them: values of their arguments, told where they lie beyond a range (expressions.h).
-#include <fmt/format.h>
-
+// Solids as a shape evaluates them (expressions.h), with a warning for arguments beyond their range.
 #include <algorithm>
-#include <cmath>
 
 #include "grammar/derive/builder.h"
 #include "grammar/derive/expressions.h"
 #include "grammar/rules/arithmetic_warnings.h"
-#include "grammar/rules/value.h"
 
 namespace sgm::derive {
 
 using rules::Value;
-
-/// What is said of values that count as others.
-static constexpr const char* nearestEnd = "it counts as the nearest of both ends";
-
-double numberWithin(const rules::Expr& expr, const Place& place, double lo, double hi, std::string_view name) {
-    const double n = number(expr, place);
-    if (n >= lo && n <= hi) return n;
-    if (place.builder) {
-        const auto text = [&](double v) { return rules::toText(Value::number(v, evaluate(expr, place).units[0])); };
-        place.builder->warn(expr.span,
-                            std::isinf(hi)
-                                ? fmt::format("{} is {}, but must be no less than {}", name, text(n), text(lo))
-                                : fmt::format("{} is {}, but must be {} … {}", name, text(n), text(lo), text(hi)),
-                            std::isinf(hi) ? fmt::format("it counts as {}", text(lo)) : nearestEnd);
-    }
-    return std::clamp(n, lo, hi);
-}
 
 std::vector<field::Argument> argumentNumbers(const SolidValue& solid) {
     std::vector<field::Argument> arguments;
@@ -51,7 +30,7 @@ SolidValue evaluateSolid(const rules::Solid& solid, const Place& place) {
         v.args.push_back(evaluate(solid.args[i], place));
         if (!place.builder || solid.args[i].kind == rules::Expr::Kind::Constant) continue;
         if (auto why = rules::findOutOfRange(*solid.primitive, i, v.args.back()))
-            place.builder->warn(solid.args[i].span, std::move(*why), nearestEnd);
+            place.builder->warn(solid.args[i].span, std::move(*why), rules::countsAsNearestEnd);
     }
     for (const rules::Solid& part : solid.parts) v.parts.push_back(evaluateSolid(part, place));
     if (solid.kind == rules::Solid::Kind::Morph)

@@ -65,13 +65,19 @@ std::string belowZero(const char* name, double length_m) {
 constexpr const char* turnBodies = "copies that look inward say 'turn 180deg' in their body";
 constexpr const char* sizeBodies = "parts that overlap say 'size' in their body";
 
+/// Refuses a length that is below 0 at the defaults of parameters.
+void checkBelowZero(OperationChecker& checker, const syntax::Attribute& written, const rules::Expr& length,
+                    const char* name, const char* fix) {
+    const auto value = checker.atDefaults(length);
+    if (value && value->num() < 0 && refusesBelowZero(checker.grammar(), written.span))
+        checker.error(length.span, belowZero(name, value->num()), fix);
+}
+
 std::shared_ptr<Parts> checkAround(OperationChecker& checker, const syntax::Attribute& written) {
     auto out = checkCopies(checker, written, true);
     if (written.args.size() < 2) return out;
     out->args.push_back(checker.expression(written.args[1], Want::Length, "'radius'"));
-    if (const auto value = checker.atDefaults(out->args.back());
-        value && value->num() < 0 && refusesBelowZero(checker.grammar(), written.span))
-        checker.error(written.args[1].span, belowZero("radius", value->num()), turnBodies);
+    checkBelowZero(checker, written, out->args.back(), "radius", turnBodies);
     return out;
 }
 
@@ -80,9 +86,7 @@ std::shared_ptr<Parts> checkRow(OperationChecker& checker, const syntax::Attribu
     if (written.args.size() > 1) out->axis = axisOf(written.args[1]);
     if (written.args.size() <= 2) return out;
     out->args.push_back(checker.measure(written.args[2], Want::Extent, "'gap'", out->axis));
-    if (const auto value = checker.atDefaults(out->args.back());
-        value && value->num() < 0 && refusesBelowZero(checker.grammar(), written.span))
-        checker.error(written.args[2].span, belowZero("gap", value->num()), sizeBodies);
+    checkBelowZero(checker, written, out->args.back(), "gap", sizeBodies);
     return out;
 }
 

@@ -7,6 +7,7 @@
 #include "grammar/derive/builder.h"
 #include "grammar/operations/operations.h"
 #include "grammar/operations/plan_expressions.h"
+#include "grammar/rules/evaluate.h"
 #include "modeler/plan/edge_words.h"
 #include "modeler/plan/edit.h"
 #include "modeler/plan/validate.h"
@@ -30,6 +31,7 @@ bool standsOverPlan(const rules::Solid& solid) {
     return solid.kind == rules::Solid::Kind::Nil || std::ranges::any_of(solid.parts, standsOverPlan);
 }
 
+/// Whether an attribute draws or changes a plan.
 bool isOfPlan(const Attribute& attribute) {
     constexpr std::array all{&footprint, &offset, &setback, &court, &rectify};
     return std::ranges::find(all, attribute.operation) != all.end();
@@ -64,8 +66,7 @@ void agreePlan(OperationChecker& checker, const Element& element, const Attribut
 
 /// Whether a size sets metres along an axis, as far as the defaults of parameters tell.
 bool setsMetres(const OperationChecker& checker, const rules::Expr& written, size_t axis) {
-    const bool isTuple = written.kind == rules::Expr::Kind::Tuple && written.args.size() == 3;
-    const auto value = checker.atDefaults(isTuple ? written.args[axis] : written);
+    const auto value = checker.atDefaults(rules::sizeAlong(written, axis));
     return value && value->units[value->count == 3 ? axis : 0] == rules::Unit::Metre;
 }
 

@@ -346,7 +346,7 @@ constinit const Operation by{
 
 constinit const Operation blend{
     .name = "blend",
-    .doc = "Melts the newcomer, or the edge of a cut, into what stands.",
+    .doc = "Blends the newcomer into what stands, or rounds the edge of a cut.",
     .example = "+ sphere at +x blend .25m",
     .arguments = blendArguments,
     .phase = Phase::Placement,

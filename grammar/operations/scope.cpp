@@ -6,6 +6,7 @@
 
 #include "grammar/derive/attribute_context.h"
 #include "grammar/operations/operations.h"
+#include "grammar/rules/evaluate.h"
 #include "grammar/rules/lookup.h"
 #include "grammar/rules/operation_checker.h"
 #include "grammar/rules/words.h"
@@ -111,9 +112,7 @@ bool hasShare(const rules::Expr& e) {
 bool goesWithScope(const AttributeContext& context, const Attribute& attribute, int axis, rules::Unit unit) {
     if (unit == rules::Unit::Share) return true;
     if (rules::versionOf(context.grammar(), attribute.span) < 2) return false;
-    const rules::Expr& size = attribute.args[0];
-    const bool isTuple = size.kind == rules::Expr::Kind::Tuple && size.args.size() == 3;
-    return hasShare(isTuple ? size.args[static_cast<size_t>(axis)] : size);
+    return hasShare(rules::sizeAlong(attribute.args[0], static_cast<size_t>(axis)));
 }
 
 void applySize(AttributeContext& context, const Attribute& attribute) {

@@ -43,7 +43,7 @@ public:
     /// around them is then meshed once. Cells of the coarsest level are made one at a time, for their tapes are long.
     std::vector<tiles::Cell> groupOf(const std::vector<tiles::Cell>& cells) const;
     /// The pieces of each, about its centre. Errors of mesh::subdivide and mesh::meshBlocks. Cells of the finest level
-    /// are told to `parts`, unless it is null.
+    /// are added to `parts`, unless it is null.
     Result<std::map<tiles::Cell, std::vector<tiles::SurfacePiece>>> make(const std::vector<tiles::Cell>& group,
                                                                          GroundParts* parts, Context& context);
     /// Where vertices of a cell's ground may lie once packed, about its centre: places that neighbours share.

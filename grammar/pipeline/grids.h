@@ -15,11 +15,11 @@ struct CellSize {
 
 constexpr int mostResolution = 8192;  ///< cells that the options --resolution and the Python module take
 
-/// The option that asks for cells of at most so many metres: "--resolution 160", or "--cell 0.0012" where that is more
+/// The option for cells of at most so many metres: "--resolution 160", or "--cell 0.0012" where that is more
 /// than `mostResolution`.
 std::string optionForCells(const Box3f& bounds, double cell_m);
 
-/// The number of two digits that is no larger; of positive ones.
+/// The largest number of two significant digits that is no larger than `value`, which is > 0.
 double withTwoDigits(double value);
 
 /// The grid over bounds.

@@ -25,7 +25,7 @@ struct LineOfGround {
 double thicknessOf(const derive::Scope& scope) { return std::min({scope.size.x, scope.size.y, scope.size.z}); }
 
 /// A cell of which two fit into a thickness and a power of two of blocks into the side.
-double cellFor(double thickness_m, double side_m) {
+double cellThatHolds(double thickness_m, double side_m) {
     const double blocks = side_m / mesh::blockCells / (thickness_m / 2);
     return side_m / mesh::blockCells / std::exp2(std::max(0.0, std::ceil(std::log2(blocks))));
 }
@@ -83,8 +83,8 @@ std::vector<MeshWarning> GroundParts::warnings(double pitch_m) const {
         if (shape == derive::none) continue;
         const double thickness_m = thicknessOf(model_.derivation.tree.shapes[shape].scope);
         if (!(thickness_m > 0 && thickness_m < pitch_m)) continue;
-        const Part& told = model_.lowered->provenance.parts[part];
-        LineOfGround& line = lines[{told.file(), told.line(), told.symbol()}];
+        const Part& made = model_.lowered->provenance.parts[part];
+        LineOfGround& line = lines[{made.file(), made.line(), made.symbol()}];
         line.thickness_m = line.parts.empty() ? thickness_m : std::min(line.thickness_m, thickness_m);
         line.parts.push_back(part);
     }
@@ -106,7 +106,7 @@ std::vector<MeshWarning> GroundParts::warnings(double pitch_m) const {
              fmt::format("{} of '{}' shows in the ground: it is {:.3g} m thick, and the ground's cells are {:g} m: "
                          "--cell {:g} holds it",
                          share < .005 ? "nothing" : fmt::format("about {:.0f} %", 100 * share), symbol,
-                         line->thickness_m, pitch_m, cellFor(line->thickness_m, side_m_)),
+                         line->thickness_m, pitch_m, cellThatHolds(line->thickness_m, side_m_)),
              true});
         if (warnings.size() == mostLines) break;
     }

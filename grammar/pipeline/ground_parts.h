@@ -1,6 +1,6 @@
 // Parts of a ground that its cells are too coarse for.
-// Enters: the origins of the triangles of finest cells, as they are made. Leaves: warnings. Assumes that a part that is
-// thicker than a cell is there.
+// Enters: the triangles of finest cells with their origins, as they are made. Leaves: warnings. Assumes that a part
+// that is thicker than a cell is there.
 #pragma once
 
 #include <set>
@@ -14,8 +14,8 @@
 
 namespace sgm::pipeline {
 
-/// Notes how much of a model's parts shows in the ground of finest cells, so that those of which less shows than should
-/// can be told.
+/// Measures how much of a model's parts shows in the ground of finest cells, to warn of those of which less shows than
+/// should.
 class GroundParts {
 public:
     /// The model has to outlive it. `side_m` is of the finest cells.

@@ -48,7 +48,7 @@ std::optional<ArithmeticWarning> rgbDoubt(const Expr& call, std::span<const Valu
         return ArithmeticWarning{
             call.args[i].span, fmt::format("'rgb' takes shares 0 … 1, but this is {:.6g}", share),
             bytes ? fmt::format("write '{} / 255', or the colour as #rrggbb", call.args[i].span.text())
-                  : "it counts as the nearest of both ends"};
+                  : countsAsNearestEnd};
     }
     return {};
 }

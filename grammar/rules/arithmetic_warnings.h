@@ -18,6 +18,9 @@ struct ArithmeticWarning {
     std::string message, hint;
 };
 
+/// The hint of a value beyond a range that is taken all the same.
+inline constexpr const char* countsAsNearestEnd = "it counts as the nearest of both ends";
+
 /// A division by 0, the square root of a negative number, a share of a colour beyond 0 … 1. `args` are the values of
 /// the arguments of `call`, a Unary, Binary or Call.
 std::optional<ArithmeticWarning> findArithmeticWarning(const Expr& call, std::span<const Value> args);
@@ -29,7 +32,7 @@ ArithmeticWarning unlikeNumbers(const Type& a, const Type& b, std::string_view v
 /// `args` are the values of its arguments.
 std::optional<ArithmeticWarning> findUnlikeNumbers(const Expr& expr, std::span<const Value> args);
 
-/// Why a primitive can't take a value for a parameter, by its index; nothing where it can.
+/// Says that a value is out of the range of a primitive's parameter, by its index; nothing where it is within.
 std::optional<std::string> findOutOfRange(const field::Primitive& row, size_t parameter, const Value& value);
 
 /// The first doubtful call within `e` where the parameters have these values; what they don't decide is left out, and

@@ -272,6 +272,10 @@ Value applyFunction(Fn fn, std::span<const Value> a) {
     }
 }
 
+const Expr& sizeAlong(const Expr& size, size_t axis) {
+    return size.kind == Expr::Kind::Tuple && size.args.size() == 3 ? size.args[axis] : size;
+}
+
 Value component(const Value& vector, const Value& index) {
     const double wanted = std::clamp(std::floor(index.num()), 0.0, vector.count - 1.0);
     const size_t i = static_cast<size_t>(wanted);

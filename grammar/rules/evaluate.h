@@ -23,6 +23,8 @@ Value applyFunction(Fn fn, std::span<const Value> args);
 
 /// `vector[index]`: an Axis indexes 0 … 5, a number from 0; past the end gives the last component.
 Value component(const Value& vector, const Value& index);
+/// What a size says along an axis, 0 … 2: its component, or the one expression that counts for all three.
+const Expr& sizeAlong(const Expr& size, size_t axis);
 
 /// Numbers or vectors' components side by side: (a, b, c).
 Value tuple(std::span<const Value> parts);

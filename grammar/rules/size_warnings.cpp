@@ -105,9 +105,8 @@ bool hasOtherPlan(const Element& e) {
         if (a.operation->phase != Operation::Phase::Scope) return false;
         if (a.plan) return true;
         if (!givesSize(a)) return false;
-        const bool isTuple = a.args[0].kind == Expr::Kind::Tuple && a.args[0].args.size() == 3;
         for (const size_t axis : {0u, 2u}) {
-            const auto value = fold(isTuple ? a.args[0].args[axis] : a.args[0], {});
+            const auto value = fold(sizeAlong(a.args[0], axis), {});
             const size_t at = value && value->count == 3 ? axis : 0;
             if (value && (value->units[at] == Unit::Metre || (value->units[at] == Unit::Share && value->n[at] != 1)))
                 return true;
@@ -163,7 +162,7 @@ void findRoofsOverTheScope(const Grammar& grammar, syntax::Diagnostics& diagnost
             for (size_t i = 1; i < chain.size(); ++i) {
                 const Element& e = chain[i];
                 if (e.kind != Element::Kind::Shape || e.op != Operator::Sum || !e.inMatchedFrame || e.on ||
-                    !e.content.solid() || !hasOwnHeight(e) || isSized(e))
+                    !hasOwnHeight(e) || isSized(e))
                     continue;
                 diagnostics.warning(e.span,
                                     fmt::format("'{}' stands over the whole scope of '{}', not over the '{}' before it",

@@ -247,11 +247,6 @@ private:
     std::vector<const Part*> rows_;  ///< of the table of places
 };
 
-Vec3d vectorOf(const Json& node, const char* key, Vec3d fallback) {
-    if (!node.contains(key)) return fallback;
-    return {node[key].at(0).get<double>(), node[key].at(1).get<double>(), node[key].at(2).get<double>()};
-}
-
 /// What cells take over of a file's JSON.
 Json withoutTheRest(const Json& json) {
     Json kept;

@@ -45,10 +45,6 @@ Result<Glb> readGlb(const std::filesystem::path& path) {
     return glb;
 }
 
-Error damagedFile(const std::filesystem::path& path) {
-    return {Error::Kind::Input, fmt::format("'{}' isn't as it was baked: remove it and bake anew", path.string())};
-}
-
 Status writeGlb(Glb glb, const std::filesystem::path& path) {
     glb.bytes.resize((glb.bytes.size() + 3) / 4 * 4, 0);
     if (!glb.bytes.empty()) glb.json["buffers"][0]["byteLength"] = glb.bytes.size();
@@ -70,6 +66,15 @@ Status writeGlb(Glb glb, const std::filesystem::path& path) {
         file.append(glb.bytes.begin(), glb.bytes.end());
     }
     return writeFile(path, file);
+}
+
+Error damagedFile(const std::filesystem::path& path) {
+    return {Error::Kind::Input, fmt::format("'{}' isn't as it was baked: remove it and bake anew", path.string())};
+}
+
+Vec3d vectorOf(const nlohmann::ordered_json& node, const char* key, Vec3d fallback) {
+    if (!node.contains(key)) return fallback;
+    return {node[key].at(0).get<double>(), node[key].at(1).get<double>(), node[key].at(2).get<double>()};
 }
 
 Status writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& json) {

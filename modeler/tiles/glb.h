@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "modeler/core/result.h"
+#include "modeler/core/vec.h"
 
 namespace sgm::tiles {
 
@@ -21,10 +22,12 @@ struct Glb {
 
 /// Error::Input for a file that can't be read or isn't a .glb.
 Result<Glb> readGlb(const std::filesystem::path& path);
-/// What to say of a file of a bake that somebody changed: Error::Input that says to remove it and bake anew.
-Error damagedFile(const std::filesystem::path& path);
 /// Writes the file, all or nothing; the length of buffer 0 becomes that of the bytes.
 Status writeGlb(Glb glb, const std::filesystem::path& path);
+/// Error::Input for a file of a bake that isn't as it was written: it says to remove it and bake anew.
+Error damagedFile(const std::filesystem::path& path);
+/// The three numbers under a key of a node, or `fallback` where it hasn't the key. Throws Json's exceptions.
+Vec3d vectorOf(const nlohmann::ordered_json& node, const char* key, Vec3d fallback);
 /// Writes JSON as text, all or nothing.
 Status writeJson(const std::filesystem::path& path, const nlohmann::ordered_json& json);
 

@@ -17,8 +17,7 @@ using Json = nlohmann::ordered_json;
 /// More elements than a packed byte ever stands for: the vertex codec packs 16 elements into a few bits at least.
 constexpr size_t mostPerByte = 1024;
 
-/// The numbers of a file, by accessor. Throws nlohmann's exceptions, std::out_of_range and Broken for what no bake
-/// wrote.
+/// Thrown for what no bake wrote.
 struct Broken {};
 
 /// A number of a file that counts something; Json would turn others into one, -1 into 2⁶⁴ − 1.
@@ -27,6 +26,12 @@ size_t wholeNumber(const Json& json) {
     return json.get<size_t>();
 }
 
+/// The one under a key, or `fallback` where the object hasn't the key.
+size_t wholeNumberOr(size_t fallback, const Json& object, const char* key) {
+    return object.contains(key) ? wholeNumber(object[key]) : fallback;
+}
+
+/// The numbers of a file, by accessor. Throws nlohmann's exceptions, std::out_of_range and Broken.
 class Numbers {
 public:
     explicit Numbers(const Glb& glb) : glb_(glb) {}
@@ -41,8 +46,8 @@ public:
         const size_t size = type == 5120 || type == 5121 ? 1 : type == 5123 ? 2 : 4;
         const Json& viewFacts = glb_.json.at("bufferViews").at(view);
         const size_t width = components * size;
-        const size_t stride = viewFacts.contains("byteStride") ? wholeNumber(viewFacts["byteStride"]) : width;
-        const size_t first = facts.contains("byteOffset") ? wholeNumber(facts["byteOffset"]) : 0;
+        const size_t stride = wholeNumberOr(width, viewFacts, "byteStride");
+        const size_t first = wholeNumberOr(0, facts, "byteOffset");
         if (stride < width || first > bytes.size() || count > (bytes.size() - first + stride - width) / stride)
             throw Broken{};
         std::vector<double> out;
@@ -101,8 +106,7 @@ private:
         const Json& view = glb_.json.at("bufferViews").at(index);
         const bool isPacked = view.contains("extensions");
         const Json& facts = isPacked ? view["extensions"].at("EXT_meshopt_compression") : view;
-        const size_t offset = facts.contains("byteOffset") ? wholeNumber(facts["byteOffset"]) : 0,
-                     length = wholeNumber(facts.at("byteLength"));
+        const size_t offset = wholeNumberOr(0, facts, "byteOffset"), length = wholeNumber(facts.at("byteLength"));
         if (facts.at("buffer") != 0 || offset > glb_.bytes.size() || length > glb_.bytes.size() - offset)
             throw Broken{};
         const uint8_t* from = glb_.bytes.data() + offset;
@@ -122,11 +126,6 @@ private:
 
     const Glb& glb_;
 };
-
-Vec3d vectorOf(const Json& node, const char* key, Vec3d fallback) {
-    if (!node.contains(key)) return fallback;
-    return {node[key].at(0).get<double>(), node[key].at(1).get<double>(), node[key].at(2).get<double>()};
-}
 
 /// What decides an object, as its node tells it.
 std::map<std::string, std::string> valuesOf(const Json& node) {
@@ -195,8 +194,7 @@ std::vector<SurfacePiece> piecesOf(const Glb& glb, const Json& mesh, const Quant
         const auto n = numbers.of(primitive.at("attributes").at("NORMAL"), 3);
         auto corners = numbers.of(primitive.at("indices"), 1);
         if (primitive.contains("extras")) {
-            const size_t skirts =
-                primitive["extras"].contains("skirtTriangles") ? wholeNumber(primitive["extras"]["skirtTriangles"]) : 0;
+            const size_t skirts = wholeNumberOr(0, primitive["extras"], "skirtTriangles");
             if (skirts > corners.size() / 3) throw Broken{};
             corners.resize(corners.size() - 3 * skirts);
         }

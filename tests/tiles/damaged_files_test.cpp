@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;
 
 const std::string text = R"(grammar 1
 terminal lawn color #86a35f
-start Town -> lawn size (60, 4, 60), move (0, 6m, 0) size (9, 8, 9) place House, move (20m, 6m, 0) size (9, 8, 9) place House
+start Town -> lawn size (60, 4, 60), Plot move (0, 6m, 0), Plot move (20m, 6m, 0)
+rule Plot -> size (9, 8, 9) place House
 start House -> cube size (8, 6, 6) - cube size (1, 2, 9) at -y to centre
 )";
 

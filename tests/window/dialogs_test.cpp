@@ -232,12 +232,12 @@ TEST_F(Dialogs, AnExportIsNeverOfAnotherText) {
     click("tab.Export");
     drag("export.cells", 0.5, 0.5, 0.05, 0.5);
     const auto isRefused = [](const auto& s) {
-        return s["notice"] == "The text has errors, and what is shown is older: nothing is written";
+        return s["notice"] == "What is shown is older than the text: nothing is written (see Problems)";
     };
     fill("export.file", (folder / "broken.ply").string());
     until("a refusal", isRefused);
     EXPECT_FALSE(fs::exists(folder / "broken.ply"));
-    // The text of the same file, once it is mended, and broken again.
+    // The text of the same file, once it is corrected, and broken again.
     std::ofstream(broken) << ball;
     until("the file", [](const auto& s) { return s["text"] == ball && !s["busy"]; });
     click("export.export");

@@ -95,10 +95,10 @@ public:
     const std::shared_ptr<const BuiltMesh>& mesh() const { return mesh_; }
     /// Of the last request that was tried: the parser's, the checker's and what went wrong later.
     const std::vector<Problem>& problems() const { return problems_; }
+    /// Revisions of the document.
     struct Revisions {
         uint64_t attempted = 0;  ///< that `problems` speaks of
-        uint64_t modelled =
-            0;  ///< of the last request that gave a model, which is `model`; a text with errors gives none
+        uint64_t modelled = 0;   ///< that `model` is of; a text with errors gives none
     };
     const Revisions& revisions() const { return revisions_; }
     /// The plan of the newest town, which is there before its model while a slider is dragged; null where there is
@@ -171,9 +171,9 @@ private:
         std::shared_ptr<const derive::Derivation> handShown;
         std::shared_ptr<const BuiltMesh> meshed;
         int meshResolution = 0;
-        std::optional<std::vector<lower::ThinPart>>
-            missing;                  ///< of `meshed`, once its cells are halved around thin parts
-        bool isMeshFinished = false;  ///< and what is missing is told
+        /// Of `meshed`, once its cells are halved around thin parts.
+        std::optional<std::vector<lower::ThinPart>> missing;
+        bool isMeshFinished = false;  ///< and its warnings are known
         mesh::Rebuild rebuild{mesh::PolygonizeOptions{.surface = mesh::Surface::Crisp}};
 
         /// No file that the grammar uses has changed since it was checked.

@@ -56,8 +56,10 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
         queue_.meshing = true;
     }
     if (last_.meshed && last_.meshed->of == last_.shown && last_.meshResolution == request.meshResolution &&
-        last_.meshed->section == request.section)
-        return request.dragging && !last_.isMeshFinished ? void() : finishMesh(progress);
+        last_.meshed->section == request.section) {
+        if (!request.dragging || last_.isMeshFinished) finishMesh(progress);
+        return;
+    }
     if (request.section) return meshCutOpen(request, progress);
     const Box3f& bounds = last_.shown->model.lowered->field.bounds;
     const float wished_m = mesh::cellFor(bounds, request.meshResolution),
@@ -95,22 +97,22 @@ void Session::meshIt(const ShowRequest& request, Progress& progress) {
     if (!request.dragging && !queue_.isSuperseded()) finishMesh(progress);
 }
 
-/// Halves cells around thin parts and tells, behind what is known of the model, what floats or is missing all the same.
-/// Where it is cancelled, the next request goes on from what is done.
+/// Halves cells around thin parts and publishes, behind what is known of the model, what floats or is missing all the
+/// same. Where it is cancelled, the next request goes on from what is done.
 void Session::finishMesh(Progress& progress) {
-    pipeline::Context context{&progress};
-    if (!last_.missing && !last_.isMeshFinished) {
-        auto finer = withThinParts(*last_.meshed, context);
-        if (!finer.ok()) return;
-        last_.missing = std::move(finer->missing);
-        if (finer->mesh) {
-            last_.meshed = finer->mesh;
-            Update update;
-            update.mesh = finer->mesh;
-            publish(std::move(update));
-        }
-    }
     if (!last_.isMeshFinished) {
+        pipeline::Context context{&progress};
+        if (!last_.missing) {
+            auto finer = withThinParts(*last_.meshed, context);
+            if (!finer.ok()) return;
+            last_.missing = std::move(finer->missing);
+            if (finer->mesh) {
+                last_.meshed = finer->mesh;
+                Update update;
+                update.mesh = finer->mesh;
+                publish(std::move(update));
+            }
+        }
         const auto warnings = pipeline::meshWarnings(last_.shown->model, *last_.meshed->mesh, last_.meshed->grid,
                                                      *last_.missing, context);
         if (!warnings.ok()) return;

@@ -168,7 +168,7 @@ void Workbench::cancel() {
 void Workbench::exportTo(document::ExportRequest request) {
     if (shown() && (asked_.otherModel || session.revisions().modelled != document.revision()))
         return say(session.busy() ? "The model isn't ready yet: export again in a moment"
-                                  : "The text has errors, and what is shown is older: nothing is written",
+                                  : "What is shown is older than the text: nothing is written (see Problems)",
                    true);
     request.inputs = session.usedFiles();
     if (!document.path().empty()) request.inputs.push_back(document.path());
